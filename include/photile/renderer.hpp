@@ -223,6 +223,7 @@ struct DrawnFrame {
   std::size_t lacking = 0;
   std::size_t empty = 0;        ///< of these, those without any light, which show that around them
   double lacking_fraction = 0;  ///< of the surface that is seen, in [0, 1]
+  double unlit_fraction = 0;    ///< likewise, what shows the light around it
   double fill_seconds = 0;      ///< spent on missing nodes
   double draw_seconds = 0;      ///< spent on drawing the latest picture
 };

@@ -155,6 +155,7 @@ TEST_CASE("Where there is no node yet, other light maps are shown, which are fil
 
   DrawnRoom empty(constant(1.0f)), waiting(constant(2.0f));
   waiting.draw(camera, 1e-7, 1.0f, 1, &empty.frames.view());
+  CHECK(waiting.drawn.unlit_fraction > 0.5);
   CHECK(waiting.maps.statistics().nodes == 0);
   CHECK(empty.maps.statistics().nodes > 0);
 }

@@ -24,6 +24,8 @@ constexpr double live_texel = 0.04;
 constexpr double chart_spacing = 0.25;
 /// Of the time, at most one part in this many goes into taking light.
 constexpr double seldom = 5;
+/// Share of a first picture that may show the light around it, whose colour is another.
+constexpr double most_unlit = 0.12;
 /// Texels that are taken beside those in view.
 constexpr std::size_t texels_beside = 60'000;
 /// Rays that find what is in view, across and down.
@@ -77,10 +79,7 @@ std::vector<std::uint32_t> LiveLight::sides_to_draw() const {
 
 /// Those that take most of the picture first.
 std::vector<std::uint32_t> LiveLight::parts_in_view(const Camera& camera) const {
-  PrimaryHitParameters film;
-  film.width = rays_across;
-  film.height = rays_down;
-  film.samples_per_pixel = 1;
+  const PrimaryHitParameters film{rays_across, rays_down, 1};
   const PrimaryHitBatch seen = trace_primary_hits(rays_, camera, film, 0, rays_down);
   std::map<std::uint32_t, std::size_t> hits;
   for (const std::uint32_t face : seen.hits.oriented_face) {
@@ -94,8 +93,10 @@ std::vector<std::uint32_t> LiveLight::parts_in_view(const Camera& camera) const 
   return parts;
 }
 
-void LiveLight::take(const Camera& camera, const view::MapGeneration& maps, bool last) {
-  if (!last && since_taken_.seconds() < (seldom - 1) * cost_) return;
+void LiveLight::take(const Camera& camera, const view::MapGeneration& maps,
+                     const DrawnFrame& drawn) {
+  if (version() == 0 && drawn.unlit_fraction > most_unlit) return;
+  if (drawn.lacking > 0 && since_taken_.seconds() < (seldom - 1) * cost_) return;
   const Stopwatch watch;
   // What other maps gave is not final, but for those of a first picture.
   if (maps_ && maps_ != &maps && maps_ != maps.coarser.get()) {

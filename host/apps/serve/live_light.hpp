@@ -29,9 +29,10 @@ class LiveLight {
   const RayScene& rays() const { return rays_; }
 
   /// Takes the light of what a camera sees, as frames show it by now, and of a little more surface,
-  /// unless that was done a moment ago. One thread, which may call FrameRenderer::light_at.
-  ///   last   whether light is final where the camera looks, so that none is to be left out
-  void take(const Camera& camera, const view::MapGeneration& maps, bool last);
+  /// unless that was done a moment ago and there is more to come, or there is too little for a
+  /// first picture. One thread, which may call FrameRenderer::light_at.
+  ///   drawn   the camera's frame
+  void take(const Camera& camera, const view::MapGeneration& maps, const DrawnFrame& drawn);
 
   /// Number of the newest state; 0 = there is no light yet. Any thread.
   std::uint64_t version() const;

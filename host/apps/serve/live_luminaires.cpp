@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
 #include <optional>
@@ -47,18 +46,15 @@ void set_array(view::LuminaireEditor& editor, const json& body) {
   const std::optional<std::size_t> entry = editor.selected();
   if (!entry || *entry >= editor.placed().size()) return;
   const PlacedLuminaires& lamps = editor.placed()[*entry];
-  std::array<int, 2> count{};
+  glm::ivec2 count;
   glm::dvec2 spacing;
-  for (int i = 0; i < 2; ++i) {
-    const json members{{"count", counts[static_cast<std::size_t>(i)]},
-                       {"spacing", metres[static_cast<std::size_t>(i)]}};
+  for (const int i : {0, 1}) {
+    const json members{{"count", counts[i]}, {"spacing", metres[i]}};
     const JsonObject along(members, "luminaires", {"count", "spacing"});
-    count[static_cast<std::size_t>(i)] = along.count("count", 1, most_in_a_row);
+    count[i] = along.count("count", 1, most_in_a_row);
     spacing[i] = along.number("spacing", 0, widest_spacing);
     // Lamps in one place are of no use.
-    if (count[static_cast<std::size_t>(i)] > 1 && spacing[i] == 0) {
-      spacing[i] = 2 * lamps.opening[i];
-    }
+    if (count[i] > 1 && spacing[i] == 0) spacing[i] = 2 * lamps.opening[i];
   }
   editor.set_array(count[0], count[1], spacing);
 }

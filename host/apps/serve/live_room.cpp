@@ -156,7 +156,7 @@ LiveRoom::LiveRoom(const Scene& scene, view::PhotonWorker::OpenDevices open_devi
                   const std::lock_guard lock(mutex_);
                   if (maps.scene == edition_.scene) light = edition_.light;
                 }
-                if (light) light->take(camera, maps, drawn.lacking == 0);
+                if (light) light->take(camera, maps, drawn);
               }),
       photons_(std::move(open_devices), parameters_.light_map_bytes) {
   publish::check_materials(scene);
@@ -210,12 +210,10 @@ void LiveRoom::make_page() {
   edition_ = std::move(edition);
   moods_number_ = 1;
   if (shown_.empty()) {  // light for the first page, before it tells where it looks
-    view::FrameRequest request;
-    request.camera = parameters_.camera_of(*first_scene_);
-    request.width = opening_width;
-    request.height = opening_height;
-    request.powers = view::scales_of(edition_.mix);
-    frames_.show(request);
+    frames_.show({.camera = parameters_.camera_of(*first_scene_),
+                  .width = opening_width,
+                  .height = opening_height,
+                  .powers = view::scales_of(edition_.mix)});
   }
   ++changes_;
   news_.notify_all();
@@ -224,32 +222,25 @@ void LiveRoom::make_page() {
 /// Has photons traced in a scene that was loaded again.
 void LiveRoom::take_scene() {
   if (!parameters_.luminaires) return;
-  std::shared_ptr<const Scene> scene;
   try {
-    {
-      const std::lock_guard lock(mutex_);
-      scene = parameters_.luminaires->take_scene();
-    }
+    std::unique_lock lock(mutex_);
+    const std::shared_ptr<const Scene> scene = parameters_.luminaires->take_scene();
+    lock.unlock();
     if (!scene) return;
     publish::check_materials(*scene);
-    next_ = made((next_ ? next_->number : edition_.number) + 1, std::move(scene));
+    next_ = made((next_ ? next_->number : edition_.number) + 1, scene);
   } catch (const Error& error) {
-    const std::lock_guard lock(mutex_);
-    message_ = error.what();
-    ++changes_;
-    return;
+    return tell(error.what());
   }
   retrace();
 }
 
 /// By the newest settings.
 void LiveRoom::retrace() {
-  RenderParameters parameters;
-  {
-    const std::lock_guard lock(mutex_);
-    parameters = parameters_.render;
-    settings_changed_ = false;
-  }
+  std::unique_lock lock(mutex_);
+  const RenderParameters parameters = parameters_.render;
+  settings_changed_ = false;
+  lock.unlock();
   photons_.trace(next_ ? next_->scene : edition_.scene, parameters, std::nullopt, {});
 }
 
@@ -260,10 +251,7 @@ void LiveRoom::take_maps() {
   if (!maps->renderer->reads_light_maps()) {
     constexpr const char* problem = "the live page needs light maps; choose maps other than naive";
     if (!seen_) throw UsageError(problem);
-    const std::lock_guard lock(mutex_);
-    message_ = problem;
-    ++changes_;
-    return;
+    return tell(problem);
   }
   const std::lock_guard lock(mutex_);
   if (!next_ || maps->scene != next_->scene) {
@@ -276,14 +264,12 @@ void LiveRoom::take_maps() {
   if (looking != viewers_.end()) request = looking->second.request;
   edition_ = *std::exchange(next_, std::nullopt);
   if (request.width == 0) {
-    request.camera = parameters_.camera_of(*edition_.scene);
-    request.width = opening_width;
-    request.height = opening_height;
+    request = {parameters_.camera_of(*edition_.scene), opening_width, opening_height};
   }
   request.moving = true;  // no exact picture before pages show the new scene
   request.powers = view::scales_of(edition_.mix);
   request.mixdown = nullptr;
-  frames_.use(std::move(maps), request);
+  frames_.use(std::move(maps), &request);
   points_.use(edition_.scene);
   find_presets();
   ++moods_number_;
@@ -292,6 +278,12 @@ void LiveRoom::take_maps() {
   white_is_known_ = false;
   ++changes_;
   news_.notify_all();
+}
+
+void LiveRoom::tell(std::string problem) {
+  const std::lock_guard lock(mutex_);
+  message_ = std::move(problem);
+  ++changes_;
 }
 
 void LiveRoom::changed() {
@@ -358,9 +350,7 @@ void LiveRoom::take_errors() {
     try {
       std::rethrow_exception(error);
     } catch (const std::exception& told) {
-      const std::lock_guard lock(mutex_);
-      message_ = told.what();
-      ++changes_;
+      tell(told.what());
     }
   }
 }

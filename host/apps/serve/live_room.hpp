@@ -110,6 +110,7 @@ class LiveRoom {
   void show(const std::string& viewer);
   void take_frame();
   void take_errors();
+  void tell(std::string problem);
   void look(Viewer& viewer, const std::string& name, const nlohmann::json& body);
   void point(Viewer& viewer, const nlohmann::json& body);
   void change_moods(const nlohmann::json& body);

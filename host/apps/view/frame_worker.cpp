@@ -1,6 +1,7 @@
 #include "view/frame_worker.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/stoppable_progress.hpp"
@@ -10,13 +11,21 @@ namespace photile::view {
 
 namespace {
 
-/// Seconds of valuing nodes before the first picture of a scene is shown.
-constexpr double first_fill = 0.35;
 /// Seconds of a viewer at rest: those of valuing nodes for each second of drawing.
 constexpr double filled_over_drawn = 5;
+/// Of a quick frame, whose rays find the nodes that are needed: texels of the page are larger than
+/// what a ray sees then.
+constexpr double most_quick_pixels = 64'000;
 /// Samples of the first whole picture after quick ones, and by how much each has more than the one
 /// before: each starts anew.
 constexpr int first_samples = 4, more_samples = 4;
+
+Film quick_film(const FrameRequest& request) {
+  const double pixels = static_cast<double>(request.width) * request.height;
+  const double side = std::min(1.0, std::sqrt(most_quick_pixels / pixels));
+  return {static_cast<int>(std::ceil(side * request.width)),
+          static_cast<int>(std::ceil(side * request.height)), 1};
+}
 
 }  // namespace
 
@@ -42,17 +51,10 @@ void FrameWorker::show(const FrameRequest& request) {
   wake_.notify_all();
 }
 
-void FrameWorker::use(std::shared_ptr<MapGeneration> maps) {
+void FrameWorker::use(std::shared_ptr<MapGeneration> maps, const FrameRequest* request) {
   const std::lock_guard lock(mutex_);
   maps_ = std::move(maps);
-  ++version_;
-  wake_.notify_all();
-}
-
-void FrameWorker::use(std::shared_ptr<MapGeneration> maps, const FrameRequest& request) {
-  const std::lock_guard lock(mutex_);
-  maps_ = std::move(maps);
-  request_ = request;
+  if (request) request_ = *request;
   ++version_;
   wake_.notify_all();
 }
@@ -106,19 +108,18 @@ double FrameWorker::time_to_fill(const Task& task, double draw_seconds) const {
 
 /// Draws the whole picture, however many nodes are missing: new surface is seen coarsely at once,
 /// and finer from frame to frame, by what there is time for. Frames are handed over as they get
-/// better, until no node is missing or something else is requested. The first picture of a scene
-/// waits for the nodes of what takes most of it; at rest others wait for none.
+/// better, until no node is missing or something else is requested.
 void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
   const FrameRequest& requested = task.request;
   MapGeneration& maps = *task.maps;
-  const bool is_first = std::exchange(drawn_scene_, maps.scene) != maps.scene;
-  bool at_once = is_first || requested.moving;
-  const Film film{requested.width, requested.height, 1};
-  std::vector<glm::vec3> picture;
+  bool at_once = requested.moving;
+  const Film film = quick_film(requested);
+  std::vector<glm::vec3> picture(static_cast<std::size_t>(film.width) *
+                                 static_cast<std::size_t>(film.height));
   const auto hand_over = [&](const DrawnFrame& drawn) {
     Frame frame;
-    frame.layers.width = film.width;
-    frame.layers.height = film.height;
+    frame.layers.width = requested.width;
+    frame.layers.height = requested.height;
     frame.mixed = picture;
     frame.lacking = drawn.lacking_fraction;
     frame.photons = maps.photons;
@@ -133,20 +134,14 @@ void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
     return time_to_fill(task, draw_seconds_);
   };
   const auto ended = [&] { return stop.stop_requested() || (!at_once && outdated(task)); };
-  const auto draw_with = [&](FrameFilling filling) {
-    filling.soft = !maps.whole;
-    picture.assign(static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height),
-                   {});
-    const DrawnFrame drawn =
-        maps.renderer->frames().draw(requested.camera, film, requested.powers, filling, picture,
-                                     Progress::none(), maps.coarser_view());
-    if (ended()) throw Interrupted();
-    hand_over(drawn);
-  };
-  const double seconds = is_first           ? first_fill
-                         : requested.moving ? time_to_fill(task, draw_seconds_)
-                                            : 0;
-  draw_with({seconds, ended, hand_over});
+  FrameFilling filling(requested.moving ? time_to_fill(task, draw_seconds_) : 0.0, ended,
+                       hand_over);
+  filling.soft = !maps.whole;
+  const DrawnFrame drawn =
+      maps.renderer->frames().draw(requested.camera, film, requested.powers, filling, picture,
+                                   Progress::none(), maps.coarser_view());
+  if (ended()) throw Interrupted();
+  hand_over(drawn);
 }
 
 std::shared_ptr<const Frame> FrameWorker::render(const std::stop_token& stop, const Task& task) {

@@ -7,7 +7,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <thread>
 #include <vector>
 
@@ -44,9 +43,8 @@ class FrameWorker {
   ~FrameWorker();
 
   void show(const FrameRequest& request);
-  void use(std::shared_ptr<MapGeneration> maps);
-  /// Takes maps of another scene, which has other powers, with what is to be seen.
-  void use(std::shared_ptr<MapGeneration> maps, const FrameRequest& request);
+  /// Maps of another scene, which has other powers, come with what is to be seen.
+  void use(std::shared_ptr<MapGeneration> maps, const FrameRequest* request = nullptr);
 
   /// Ends the work. Returns the newest maps, which this does not use any longer; null: there are
   /// none.
@@ -89,10 +87,9 @@ class FrameWorker {
   std::shared_ptr<const Frame> latest_;
   std::exception_ptr error_;
   // The worker's alone:
-  const double frame_seconds_;                               ///< aimed at while moving
-  std::optional<std::shared_ptr<const Scene>> drawn_scene_;  ///< that of the frame before
-  double draw_seconds_ = 0;  ///< of the newest quick frame, its nodes left out
-  std::jthread thread_;      // last: it uses all of the above
+  const double frame_seconds_;  ///< aimed at while moving
+  double draw_seconds_ = 0;     ///< of the newest quick frame, its nodes left out
+  std::jthread thread_;         // last: it uses all of the above
 };
 
 }  // namespace photile::view

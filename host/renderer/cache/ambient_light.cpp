@@ -55,6 +55,7 @@ void AmbientLight::gather(const LightMaps& maps, const Scene& scene,
   if (light.empty()) return;
   const auto step = static_cast<std::uint32_t>((light.size() + most_nodes - 1) / most_nodes);
   const auto nodes = static_cast<std::uint32_t>(light.size());
+  const auto spacing = static_cast<float>(maps.charts().spacing());
   glm::vec3 highest(std::numeric_limits<float>::lowest());
   lowest_ = -highest;
   for (std::uint32_t node = 0; node < nodes; node += step) {
@@ -73,10 +74,11 @@ void AmbientLight::gather(const LightMaps& maps, const Scene& scene,
     for (std::uint32_t node = 0; node < nodes; node += step) {
       const LightMaps::NodePoint& point = maps.point(node);
       const auto weights = weights_of(glm::vec3(face_normal(scene, point.oriented_face)));
-      const auto add_to = [&](Vertex& vertex, float weight) {
+      const glm::vec4 counted = std::clamp(maps.distance(node) / spacing, least_node_weight, 1.0f) *
+                                glm::vec4(glm::vec3(light[node]), 1.0f);
+      const auto add_to = [&](Vertex& vertex, float share) {
         for (std::size_t i = 0; i < weights.size(); ++i) {
-          vertex[i] +=
-              weight * (weights[i] + other_directions) * glm::vec4(glm::vec3(light[node]), 1.0f);
+          vertex[i] += share * (weights[i] + other_directions) * counted;
         }
       };
       around(finest_, level, within_bounds(point.position), add_to);

@@ -1,5 +1,5 @@
 // Light in space, interpolated from the nodes around: shown on surface whose nodes have no light
-// yet.
+// yet, or lie in its grooves.
 #pragma once
 
 #include <array>
@@ -11,6 +11,9 @@
 #include "cache/light_maps.hpp"
 
 namespace photile::cache {
+
+/// Nodes that lie closer to other surface count less; this much at least.
+inline constexpr float least_node_weight = 1e-3f;
 
 /// Irradiance by position and direction of the normal: lattices from coarse to fine (Greger et al.,
 /// "The Irradiance Volume", 1998), whose vertices have a value for each of six directions

@@ -22,8 +22,8 @@ namespace {
 /// Seconds of filling a position, before they are known: by photons, and by rays at it and around
 /// it.
 constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 10e-3;
-/// Seconds of filling positions after which it is checked whether the frame is to end.
-constexpr double seconds_of_batch = 0.015;
+/// Of filling, before it is asked whether the frame is to end: seconds, or this part of its time.
+constexpr double seconds_of_batch = 0.015, part_of_batch = 0.25;
 
 /// Light in space is gathered anew when the number of filled nodes has grown by this factor.
 constexpr double more_nodes = 1.1;
@@ -31,8 +31,9 @@ constexpr double more_nodes = 1.1;
 /// A corner of a cell may be this many times as bright as all others.
 constexpr double most_over_others = 3;
 
-/// The least weight of a node, so that some corner of each cell counts.
-constexpr float least_weight = 1e-3f;
+/// Where all corners of a cell weigh less, as on a moulding, whose nodes lie in its grooves, light
+/// of nodes around the cell counts instead.
+constexpr float enclosed_weight = 0.25f;
 
 double luminance_of(const glm::vec4& light) { return luminance(glm::dvec3(light)); }
 
@@ -142,8 +143,8 @@ class FrameView::Softening {
         static_cast<float>(std::ldexp(view_.maps_.charts().spacing(), -static_cast<int>(level)));
     const std::span<const glm::vec4> light = view_.mix_.light();
     for (const std::uint32_t node : nodes) {
-      view_.weight_[node] = std::min(view_.weight_[node],
-                                     std::max(least_weight, view_.maps_.distance(node) / spacing));
+      view_.weight_[node] = std::min(
+          view_.weight_[node], std::max(least_node_weight, view_.maps_.distance(node) / spacing));
       for (const std::uint32_t other : nodes) {
         if (other == node) continue;
         brightest_other_[node] = std::max(brightest_other_[node], luminance_of(light[other]));
@@ -290,12 +291,15 @@ std::optional<glm::vec3> FrameView::irradiance(std::uint32_t oriented_face,
 bool FrameView::weigh(BilinearWeights& bilinear) const {
   if (weight_.empty()) return false;
   bool softened = false;
-  float sum = 0;
+  float sum = 0, most = 0;
   for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
+    const float weight = weight_[bilinear.node[i]];
     softened |= lacks_beside_[bilinear.node[i]] != 0;
-    sum += bilinear.weight[i] *= weight_[bilinear.node[i]];
+    sum += bilinear.weight[i] *= weight;
+    most = std::max(most, weight);
   }
-  for (float& weight : bilinear.weight) weight /= sum;
+  const float share = std::min(1.0f, most / enclosed_weight);
+  for (float& weight : bilinear.weight) weight *= share / sum;
   return softened;
 }
 
@@ -305,10 +309,16 @@ glm::vec3 FrameView::between(const BilinearWeights& bilinear, std::uint32_t orie
     return (bilinear.weight[0] * of[bilinear.node[0]] + bilinear.weight[1] * of[bilinear.node[1]]) +
            (bilinear.weight[2] * of[bilinear.node[2]] + bilinear.weight[3] * of[bilinear.node[3]]);
   };
-  const glm::vec3 light(interpolated(light_));
-  if (by_normal_.empty()) return light;
-  return turned(light, interpolated(by_normal_),
-                trace::shading_normal(scene_, oriented_face, position));
+  glm::vec3 light(interpolated(light_));
+  if (!by_normal_.empty()) {
+    light = turned(light, interpolated(by_normal_),
+                   trace::shading_normal(scene_, oriented_face, position));
+  }
+  const float of_nodes =
+      (bilinear.weight[0] + bilinear.weight[1]) + (bilinear.weight[2] + bilinear.weight[3]);
+  constexpr float rounding = 1e-5f;
+  if (weight_.empty() || of_nodes > 1 - rounding) return light;
+  return light + (1 - of_nodes) * ambient(oriented_face, position);
 }
 
 bool FrameView::find(std::uint32_t oriented_face, const glm::vec3& position,
@@ -378,7 +388,7 @@ void FrameView::fill(double seconds, const FrameFilling& filling, const Progress
   double left = seconds;
   do {
     // As many as the time allows: one batch too many makes the frame late.
-    const double of_batch = std::min(left, seconds_of_batch);
+    const double of_batch = std::min(left, std::max(seconds_of_batch, part_of_batch * seconds));
     const std::size_t count =
         std::isinf(left)
             ? last

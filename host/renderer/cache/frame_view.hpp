@@ -26,7 +26,8 @@ namespace photile::cache {
 ///   - Nodes on the border of a larger cell show the mean which that cell has at their position,
 ///     whatever they hold: otherwise there would be a step along that border.
 ///   - A corner of a cell counts less where its surroundings are nearer than the next corner: it
-///     may lie behind a door, and tells little about the surface in front of it.
+///     may lie behind a door, and tells little about the surface in front of it. Where that is so
+///     of all corners, light of the nodes around the cell counts.
 ///   - No corner of a cell is brighter than all others by more than a given factor: nodes beside
 ///     lights would show as bright squares.
 class FrameView {
@@ -90,8 +91,8 @@ class FrameView {
  private:
   class Softening;
 
-  /// Weighs nodes by how much they count. Returns whether any is softened because a cell beside it
-  /// lacks nodes.
+  /// Weighs nodes by how much they count; what their sum lacks of 1, the light of the nodes around
+  /// counts. Returns whether any is softened because a cell beside it lacks nodes.
   bool weigh(BilinearWeights& bilinear) const;
 
   /// A position at which a cell without filled nodes is seen: one sample in each packet of rays.

@@ -70,7 +70,7 @@ class FrameRenderer::Picture {
 
   /// What pixels read of light maps.
   struct Reads {
-    std::uint64_t samples = 0, lacking = 0;
+    std::uint64_t samples = 0, lacking = 0, unlit = 0;
     bool unfinished = false;  ///< whether they are to be drawn again
   };
   /// Draws blocks; leaves those that are to be drawn again.
@@ -86,6 +86,7 @@ class FrameRenderer::Picture {
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       all.samples += reads[i].samples;
       all.lacking += reads[i].lacking;
+      all.unlit += reads[i].unlit;
       if (reads[i].unfinished) blocks[left++] = blocks[i];
     }
     blocks.resize(left);
@@ -183,6 +184,7 @@ class FrameRenderer::Picture {
     }
     reads.unfinished |= lacks;
     reads.lacking += lacks ? 1 : 0;
+    reads.unlit += light ? 0 : 1;
     ++reads.samples;
     return light ? *light : views_.back()->ambient(oriented_face, position);
   }
@@ -291,8 +293,9 @@ DrawnFrame FrameRenderer::draw(const Camera& camera, const Film& film,
     drawn.lacking = 0;
     for (const cache::FrameView* view : views) drawn.lacking += view->lacking();
     drawn.empty = views.back()->empty();
-    drawn.lacking_fraction =
-        samples > 0 ? static_cast<double>(reads.lacking) / static_cast<double>(samples) : 0.0;
+    const auto all = static_cast<double>(std::max<std::uint64_t>(1, samples));
+    drawn.lacking_fraction = static_cast<double>(reads.lacking) / all;
+    drawn.unlit_fraction = static_cast<double>(reads.unlit) / all;
     if (drawn.lacking == 0) return drawn;
     if (!(left > 0)) {
       if (!filling.show) return drawn;
