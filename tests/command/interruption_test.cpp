@@ -299,7 +299,7 @@ TEST_CASE("a bar leaves the last column of any terminal free") {
 }
 
 TEST_CASE("a bar copes with nothing done, too much done and an unknown total") {
-  CHECK_THAT(progress_bar({"a", 0, 100, "paths", 0}, 100), Contains("  0%") && Contains("| ?"));
+  CHECK_THAT(progress_bar({"a", 0, 100, "paths", 1}, 100), !Contains("%") && Contains("1.00 s"));
   CHECK_THAT(progress_bar({"a", 150, 100, "paths", 1}, 100), Contains("100%"));
   CHECK_THAT(progress_bar({"a", 150, 0, "paths", 1}, 100), !Contains("%") && Contains("1.00 s"));
 }

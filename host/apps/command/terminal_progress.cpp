@@ -56,10 +56,9 @@ double fraction(const StageProgress& progress) {
   return std::min(1.0, static_cast<double>(progress.done) / static_cast<double>(progress.total));
 }
 
-/// "3.8 s", or "?" before anything is known.
+/// Of a stage that has begun: "3.8 s".
 std::string remaining(const StageProgress& progress) {
-  const double done = fraction(progress);
-  return done > 0 ? format_seconds(progress.seconds * (1 - done) / done) : "?";
+  return format_seconds(progress.seconds * (1 / fraction(progress) - 1));
 }
 
 /// "1.9M paths/s"; empty before anything is known.
@@ -75,7 +74,7 @@ std::string progress_bar(const StageProgress& progress, int width) {
   const std::string head = fmt::format("{:<20} ", progress.stage);
   std::string tail;
   int bar_width = 0;
-  if (progress.total == 0) {
+  if (fraction(progress) == 0) {  // 0% for some time would look as if nothing were done
     tail = fmt::format("{}  {}", format_seconds(progress.seconds), rate(progress));
   } else {
     tail = fmt::format(" {:3.0f}%  {} | {}  {}", 100 * fraction(progress),
@@ -95,7 +94,7 @@ std::string progress_bar(const StageProgress& progress, int width) {
 
 std::string progress_text(const StageProgress& progress) {
   const std::string elapsed = format_seconds(progress.seconds);
-  if (progress.total == 0) return fmt::format("{}: {}", progress.stage, elapsed);
+  if (fraction(progress) == 0) return fmt::format("{}: {}", progress.stage, elapsed);
   return fmt::format("{}: {:.0f}%, {}, {} left", progress.stage, 100 * fraction(progress), elapsed,
                      remaining(progress));
 }

@@ -13,16 +13,17 @@ namespace {
 
 /// Seconds of a viewer at rest: those of valuing nodes for each second of drawing.
 constexpr double filled_over_drawn = 5;
-/// Of a quick frame, whose rays find the nodes that are needed: texels of the page are larger than
-/// what a ray sees then.
-constexpr double most_quick_pixels = 64'000;
+/// Pixels of a quick frame, whose rays find the nodes that are needed, and of one at rest once all
+/// photons are there: then small things are to be found, too.
+constexpr double quick_pixels = 64'000, pixels_at_rest = 256'000;
 /// Samples of the first whole picture after quick ones, and by how much each has more than the one
 /// before: each starts anew.
 constexpr int first_samples = 4, more_samples = 4;
 
-Film quick_film(const FrameRequest& request) {
+Film quick_film(const FrameRequest& request, bool whole) {
   const double pixels = static_cast<double>(request.width) * request.height;
-  const double side = std::min(1.0, std::sqrt(most_quick_pixels / pixels));
+  const double most = request.moving || !whole ? quick_pixels : pixels_at_rest;
+  const double side = std::min(1.0, std::sqrt(most / pixels));
   return {static_cast<int>(std::ceil(side * request.width)),
           static_cast<int>(std::ceil(side * request.height)), 1};
 }
@@ -113,7 +114,7 @@ void FrameWorker::draw(const std::stop_token& stop, const Task& task) {
   const FrameRequest& requested = task.request;
   MapGeneration& maps = *task.maps;
   bool at_once = requested.moving;
-  const Film film = quick_film(requested);
+  const Film film = quick_film(requested, maps.whole);
   std::vector<glm::vec3> picture(static_cast<std::size_t>(film.width) *
                                  static_cast<std::size_t>(film.height));
   const auto hand_over = [&](const DrawnFrame& drawn) {
