@@ -22,8 +22,8 @@ namespace {
 /// Seconds of filling a position, before they are known: by photons, and by rays at it and around
 /// it.
 constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 10e-3;
-/// Of filling, before it is asked whether the frame is to end: seconds, or this part of its time.
-constexpr double seconds_of_batch = 0.015, part_of_batch = 0.25;
+/// Seconds of filling before it is asked whether the frame is to end: first, and then at most.
+constexpr double first_batch = 0.015, largest_batch = 0.1;
 
 /// Light in space is gathered anew when the number of filled nodes has grown by this factor.
 constexpr double more_nodes = 1.1;
@@ -316,8 +316,7 @@ glm::vec3 FrameView::between(const BilinearWeights& bilinear, std::uint32_t orie
   }
   const float of_nodes =
       (bilinear.weight[0] + bilinear.weight[1]) + (bilinear.weight[2] + bilinear.weight[3]);
-  constexpr float rounding = 1e-5f;
-  if (weight_.empty() || of_nodes > 1 - rounding) return light;
+  if (weight_.empty() || of_nodes > 1 - 1e-5f) return light;  // the rest is rounding
   return light + (1 - of_nodes) * ambient(oriented_face, position);
 }
 
@@ -388,7 +387,8 @@ void FrameView::fill(double seconds, const FrameFilling& filling, const Progress
   double left = seconds;
   do {
     // As many as the time allows: one batch too many makes the frame late.
-    const double of_batch = std::min(left, std::max(seconds_of_batch, part_of_batch * seconds));
+    const double of_batch = std::min(
+        left, first == 0 ? first_batch : std::clamp(seconds / 4, first_batch, largest_batch));
     const std::size_t count =
         std::isinf(left)
             ? last

@@ -85,7 +85,7 @@ std::string first_error(const std::string& log) {
 }  // namespace
 
 std::string base_options(cl_device_id device) {
-  std::string options = "-cl-std=CL1.2 -cl-kernel-arg-info";
+  std::string options = "-cl-std=CL1.2 -cl-kernel-arg-info -w";
   const auto single = device_property<cl_device_fp_config>(device, CL_DEVICE_SINGLE_FP_CONFIG);
   if (single & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) {
     options += " -cl-fp32-correctly-rounded-divide-sqrt";
