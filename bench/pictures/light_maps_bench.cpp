@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <glm/gtx/rotate_vector.hpp>
 #include <limits>
 #include <optional>
 #include <random>
@@ -25,7 +26,6 @@
 #include "support/workload.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
-#include "view/navigation.hpp"
 
 namespace {
 
@@ -45,10 +45,14 @@ struct Settings {
 
 /// Where a viewer is who has walked and turned.
 Camera moved(const Scene& scene, double metres, double degrees) {
-  view::Viewpoint viewpoint(scene.cameras.front());
-  viewpoint.turn(glm::radians(degrees), 0);
-  viewpoint.walk(metres, 0, 0);
-  return viewpoint.camera();
+  Camera camera = scene.cameras.front();
+  const glm::dvec3 up(0, 1, 0);
+  for (glm::dvec3* axis : {&camera.forward, &camera.up, &camera.right}) {
+    *axis = glm::rotate(*axis, -glm::radians(degrees), up);
+  }
+  const glm::dvec3 ahead(camera.forward.x, 0, camera.forward.z);  // walkers stay level
+  camera.position += metres * glm::normalize(ahead);
+  return camera;
 }
 
 nlohmann::json json_of(const TimeTaken& taken) {

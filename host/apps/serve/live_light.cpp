@@ -95,8 +95,9 @@ std::vector<std::uint32_t> LiveLight::parts_in_view(const Camera& camera) const 
 
 void LiveLight::take(const Camera& camera, const view::MapGeneration& maps,
                      const DrawnFrame& drawn) {
-  if (version() == 0 && drawn.unlit_fraction > most_unlit) return;
-  if (drawn.lacking > 0 && since_taken_.seconds() < (seldom - 1) * cost_) return;
+  const bool too_soon = since_taken_.seconds() < (seldom - 1) * cost_ ||
+                        (version() == 0 && drawn.unlit_fraction > most_unlit);
+  if (drawn.lacking > 0 && too_soon) return;
   const Stopwatch watch;
   // What other maps gave is not final, but for those of a first picture.
   if (maps_ && maps_ != &maps && maps_ != maps.coarser.get()) {

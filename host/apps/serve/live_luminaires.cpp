@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <optional>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "common/json_object.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "serve/page_requests.hpp"
 
 namespace photile::serve {
 namespace {
@@ -23,13 +23,6 @@ constexpr int most_entries = 1000, most_in_a_row = 100;
 constexpr double widest_spacing = 100, farthest_pick = 1e4;
 
 json components(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
-
-glm::dvec3 direction_in(const JsonObject& object, const char* key) {
-  const glm::dvec3 direction = object.vector(key);
-  const double length = glm::length(direction);
-  if (!(std::abs(length - 1) < 0.01)) object.refuse(fmt::format("'{}' is not of length 1", key));
-  return direction / length;
-}
 
 /// Two members of an array, of any type.
 const json& pair_in(const json& body, const char* key, const JsonObject& object) {

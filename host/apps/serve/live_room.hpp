@@ -2,6 +2,7 @@
 // the same lamps.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
@@ -111,7 +112,6 @@ class LiveRoom {
   void take_frame();
   void take_errors();
   void tell(std::string problem);
-  void look(Viewer& viewer, const std::string& name, const nlohmann::json& body);
   void point(Viewer& viewer, const nlohmann::json& body);
   void change_moods(const nlohmann::json& body);
   void change_settings(const nlohmann::json& body);
@@ -141,9 +141,9 @@ class LiveRoom {
   std::string message_;          ///< an error after the first light
   Stopwatch since_left_;
   bool visited_ = false;
-  bool seen_ = false;              ///< any frame
-  bool settings_changed_ = false;  ///< since photons were traced
-  bool traced_as_asked_ = true;    ///< by the settings that the command was given
+  bool seen_ = false;                           ///< any frame
+  std::atomic<bool> settings_changed_ = false;  ///< since photons were traced
+  bool traced_as_asked_ = true;                 ///< by the settings that the command was given
 
   std::optional<Edition> next_;  ///< once there are photons in its scene: of the thread of `step`
   view::FrameWorker frames_;

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "common/ascii_text.hpp"
-#include "common/json_object.hpp"
 #include "image/display.hpp"
 #include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
@@ -45,6 +44,13 @@ json parsed(const std::string& body) {
   json document = json::parse(body, nullptr, /*allow_exceptions=*/false);
   if (!document.is_object()) throw InputError("request: is not a JSON object");
   return document;
+}
+
+glm::dvec3 direction_in(const JsonObject& object, const char* key) {
+  const glm::dvec3 direction = object.vector(key);
+  const double length = glm::length(direction);
+  if (!(std::abs(length - 1) < 0.01)) object.refuse(fmt::format("'{}' is not of length 1", key));
+  return direction / length;
 }
 
 view::FrameRequest view_in(const json& body, const LightMix& mix) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/json_object.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
 #include "serve/live_pictures.hpp"
@@ -17,6 +18,9 @@ namespace photile::serve {
 
 /// The object that a body is.
 nlohmann::json parsed(const std::string& body);
+
+/// A vector of length 1.
+glm::dvec3 direction_in(const JsonObject& object, const char* key);
 
 /// Where a viewer looks. A sky whose hour the page sets is one layer.
 ///   mix   of the scene

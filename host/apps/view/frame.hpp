@@ -18,8 +18,8 @@ struct InspectablePhotons;  // photon_map.hpp
 
 struct Frame {
   LightLayers layers;  ///< of a quick frame only width and height
-  /// A quick frame: the light of all lamps together, linear RGB, of fewer pixels than were asked for
-  /// where those are many; else empty.
+  /// A quick frame: the light of all lamps together, linear RGB, of fewer pixels than were asked
+  /// for where those are many; else empty.
   std::vector<glm::vec3> mixed;
   /// The part of it that came by reflection, where it was asked for.
   std::optional<LightLayers> reflections;

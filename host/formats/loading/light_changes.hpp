@@ -34,8 +34,8 @@ void apply_temperatures(Scene& scene, std::span<const LightTemperature> temperat
 /// pattern that matches no material, or a material that cannot have that reflectance.
 void apply_reflectances(Scene& scene, std::span<const MaterialShare> changes);
 
-/// Makes glass of materials, see SceneLoadOptions::glasses. Errors: UsageError naming a pattern that
-/// matches no material.
+/// Makes glass of materials, see SceneLoadOptions::glasses. Errors: UsageError naming a pattern
+/// that matches no material.
 void apply_glasses(Scene& scene, std::span<const MaterialShare> glasses);
 
 }  // namespace photile::loading

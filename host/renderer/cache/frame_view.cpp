@@ -22,7 +22,8 @@ namespace {
 /// Seconds of filling a position, before they are known: by photons, and by rays at it and around
 /// it.
 constexpr double seconds_of_photons = 20e-6, seconds_of_rays = 10e-3;
-/// Seconds of filling before it is asked whether the frame is to end: first, and then at most.
+/// Seconds that the first batch of a frame takes, and that any takes at most: after each, it is
+/// asked whether the frame is to end.
 constexpr double first_batch = 0.015, largest_batch = 0.1;
 
 /// Light in space is gathered anew when the number of filled nodes has grown by this factor.
@@ -31,8 +32,8 @@ constexpr double more_nodes = 1.1;
 /// A corner of a cell may be this many times as bright as all others.
 constexpr double most_over_others = 3;
 
-/// Where all corners of a cell weigh less, as on a moulding, whose nodes lie in its grooves, light
-/// of nodes around the cell counts instead.
+/// Where every corner of a cell weighs less, as on a moulding whose nodes lie in its grooves, the
+/// light around the cell replaces theirs by as much.
 constexpr float enclosed_weight = 0.25f;
 
 double luminance_of(const glm::vec4& light) { return luminance(glm::dvec3(light)); }

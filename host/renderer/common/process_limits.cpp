@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <latch>
 #include <limits>
@@ -13,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 
 namespace photile {
@@ -45,6 +47,15 @@ void require_stack() {
   if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur >= least) return;
   throw Error(fmt::format("the stack limit is {} kB, but {} are needed; raise it (ulimit -s 8192)",
                           limit.rlim_cur >> 10, least >> 10));
+}
+
+void lower_priority() {
+  constexpr int niceness = 10;
+  std::error_code missing;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task", missing)) {
+    const auto id = parse_number<id_t>(thread.path().filename().string());
+    if (id) setpriority(PRIO_PROCESS, *id, niceness);
+  }
 }
 
 std::uint64_t address_bytes_left() {

@@ -22,6 +22,10 @@ void require_threads(int count);
 /// Errors: Error where stacks are too small for the code that runs on them.
 void require_stack();
 
+/// Threads of this process, and those that they begin, take what processor time other programs
+/// leave.
+void lower_priority();
+
 /// A generous bound on the memory of a device's compiler, and of the host besides its buffers.
 inline constexpr std::uint64_t reserved_address_bytes = std::uint64_t{1} << 30;
 

@@ -24,6 +24,13 @@ class CoincidentFaces {
 
   bool empty() const { return before_.items.empty(); }
 
+  /// Whether faces count before either side of a triangle: asked at each hit, of rows that lie side
+  /// by side.
+  bool overlap(std::uint32_t triangle) const {
+    return !empty() &&
+           before_.first[oriented(triangle, 0)] != before_.first[oriented(triangle, 1) + 1];
+  }
+
   /// The oriented faces that count before this one where they overlap it, the first one first.
   std::span<const std::uint32_t> before(std::uint32_t oriented_face) const {
     return empty() ? std::span<const std::uint32_t>() : before_.of(oriented_face);

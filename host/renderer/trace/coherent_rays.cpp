@@ -57,7 +57,10 @@ void intersect(const RayScene& rays, const glm::vec3& origin, const CoherentDire
       hits.v[i] = where.v;
       hits.side[i] = surface_hit(*scene.scene, where, direction).side;
     }
-    if (hits.triangle[i] == none || scene.coincident.empty()) continue;
+    if (hits.triangle[i] == none ||
+        scene.coincident.before(oriented(hits.triangle[i], hits.side[i])).empty()) {
+      continue;
+    }
     const glm::vec3 direction(directions.x[i], directions.y[i], directions.z[i]);
     const TriangleHit first =
         scene.resolve_coincident({hits.triangle[i], hits.u[i], hits.v[i]}, direction);

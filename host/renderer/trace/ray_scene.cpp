@@ -90,10 +90,7 @@ std::optional<trace::TriangleHit> RayScene::Impl::intersect(const trace::RayOrig
 
 trace::TriangleHit RayScene::Impl::resolve_coincident(const trace::TriangleHit& hit,
                                                       const glm::vec3& direction) const {
-  if (coincident.before(oriented(hit.triangle, 0)).empty() &&
-      coincident.before(oriented(hit.triangle, 1)).empty()) {
-    return hit;
-  }
+  if (!coincident.overlap(hit.triangle)) return hit;
   const trace::SurfacePoint met = trace::surface_hit(*scene, hit, direction);
   const glm::dvec3 position(met.position);
   const std::uint32_t face = coincident.at(*scene, met.oriented_face(), position);
