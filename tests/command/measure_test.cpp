@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -185,6 +186,22 @@ TEST_CASE("a target is judged in the table, the JSON and the report") {
   CHECK(record["target"]["judgements"][1]["met"] == false);
   CHECK(record["grids"].size() == 1 + 4 + 1 + 1 + 4);
   CHECK_THAT(folder.read("a.html"), Contains("not met"));
+}
+
+TEST_CASE("emergency lighting is measured by direct light alone") {
+  const FileFolder folder;
+  folder.write("axis.pts", "-0.6 -0.9 0 0 1 0\n-0.6 0 0 0 1 0\n");
+  succeed(typed("measure", write_box(folder),
+                "--photons 5k --rays 1024 --quiet --light right=off --target escape-route",
+                "--points", folder / "axis.pts", "-o", folder / "a.json"));
+  // Of the form factor of a square, from a point on its axis to a quarter with sides of 0.2 m.
+  const auto quarter = [](double height) {
+    const double side = 0.2 / height, slant = std::sqrt(1 + side * side);
+    return side / slant * std::atan(side / slant);
+  };
+  const auto sensors = nlohmann::json::parse(folder.read("a.json"))["grids"][0]["sensors"];
+  CHECK(sensors[0]["lux"].get<double>() / sensors[1]["lux"].get<double>() ==
+        Approx(quarter(1.89) / quarter(0.99)).epsilon(0.005));
 }
 
 TEST_CASE("a report has the project, glare and a year beside its figures, and lines to sign on") {

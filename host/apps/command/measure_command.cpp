@@ -73,6 +73,16 @@ LightMix mix_of_sky(const SceneLoadOptions& load, Scene& scene, const RenderOpti
   return mix;
 }
 
+/// Makes all surfaces black, but for glass.
+void remove_reflections(Scene& scene) {
+  for (Material& material : scene.materials) {
+    if (material.interaction == Interaction::glass) continue;
+    material.interaction = Interaction::opaque;
+    material.diffuse = material.specular = glm::vec3(0.0f);
+    material.metallic_roughness = none;
+  }
+}
+
 double most_of(const measuring::Measurement& measurement) {
   double most = 0;
   for (const auto& grid : measurement) {
@@ -164,6 +174,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   const LightMix mix =
       options.daylight_factor ? mix_of_sky(render.load, scene, render) : mix_of(scene, render);
   tell_scene(scene, mix, render.load, progress);
+  if (requirement && requirement->is_direct) remove_reflections(scene);
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
   outputs.check_names(grids);
   scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
@@ -231,7 +242,8 @@ void add_measuring(CLI::App& command, MeasureOptions& options) {
       "--daylight-factor", options.daylight_factor,
       "per cent of the illuminance on open ground under the CIE overcast sky; .csv, .json, .svg");
   measuring.add("--target", options.target, "NAME|VALUES",
-                "requirements, by name (office-desk: EN 12464-1) or values (Em=500,Uo=0.6)");
+                "requirements, by name (office-desk: EN 12464-1; escape-route: EN 1838, by direct "
+                "light alone) or values (Em=500,Uo=0.6)");
   add_maintenance_option(measuring, options.parameters, &options.outputs.maintenance);
   add_sensor_options(measuring, options.parameters);
 }

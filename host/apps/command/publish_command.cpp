@@ -102,10 +102,10 @@ class LitRoom {
   }
 
   const bake::BakedLight& baked() const { return *baked_; }
-  /// How `photile render` shows what the first camera sees, by the light maps as they are.
-  ToneMapping shown(const PictureOptions& options, const LightMix& mix, Progress& progress) {
+  /// How `photile render` shows what a camera sees, by the light maps as they are.
+  ToneMapping shown(const Camera& camera, const PictureOptions& options, const LightMix& mix,
+                    Progress& progress) {
     constexpr int samples = 4;  // of 200,000 pixels: more would not change their mean
-    const Camera& camera = publish::opening_camera(scene_);
     Film film;
     set_film_size(film, "", camera);
     film.samples_per_pixel = samples;
@@ -157,6 +157,7 @@ void run_publish(PublishOptions& options) {
   const SkySituation situation = sky_of_page(render.load);
   const Scene scene = loading::load_scene(render.scene, render.load, progress);
   const LightMix mix = mix_of(scene, render);
+  const Camera opening = opening_camera(scene, render);
   check_outputs(files_of(options.outputs, scene, mix));
   const std::vector<publish::Preset> presets = presets_of(render, mix);
   const publish::SkyHours hours = publish::sky_hours(mix, situation);
@@ -178,7 +179,7 @@ void run_publish(PublishOptions& options) {
     const std::optional<LightTable> errors = lit.errors();
     const bool has_page = std::any_of(options.outputs.begin(), options.outputs.end(), is_page);
     const ToneMapping display =
-        has_page ? lit.shown(render.pictures, mix, progress) : ToneMapping();
+        has_page ? lit.shown(opening, render.pictures, mix, progress) : ToneMapping();
     for (const std::filesystem::path file : options.outputs) {
       if (!is_page(file)) {
         bake::write_baked(file, scene, lit.baked(), mix);
@@ -187,6 +188,7 @@ void run_publish(PublishOptions& options) {
       publish::write_page(
           file,
           {.scene = scene,
+           .opening = opening,
            .atlas = lit.baked(),
            .light = &lit.baked(),
            .mix = mix,
@@ -251,6 +253,7 @@ void add_publish_command(CLI::App& photile) {
       fmt::format("distance between texels of the light maps, m; default: {}, or what fits",
                   defaults::published_texel),
       positive_number());
+  add_view_options(OptionGroup(*command, "Picture"), options->render);
   set_quality(options->render.quality_options(), Quality::good);
   add_quality_preset(*command, options->render.quality_options());
   OptionGroup(*command, "Quality")

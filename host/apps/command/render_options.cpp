@@ -15,6 +15,7 @@
 #include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
+#include "publish/published_room.hpp"
 #include "reading/camera_path.hpp"
 
 namespace photile::app {
@@ -208,6 +209,11 @@ Camera camera_of(const Scene& scene, const RenderOptions& options) {
   camera.name = from.name;
   camera.aspect_ratio = from.aspect_ratio;
   return in_scene(scene, camera);
+}
+
+Camera opening_camera(const Scene& scene, const RenderOptions& options) {
+  const Camera camera = camera_of(scene, options);
+  return camera.projection == Projection::perspective ? camera : publish::opening_camera(scene);
 }
 
 Camera projected(Camera camera, const RenderOptions& options) {

@@ -104,6 +104,9 @@ const Camera& choose_camera(const Scene& scene, const std::string& selector);
 /// Errors: those of choose_camera; UsageError where it would look at its own position.
 Camera camera_of(const Scene& scene, const RenderOptions& options);
 
+/// The same, or where it has no perspective the first that has, if any: pages have a perspective.
+Camera opening_camera(const Scene& scene, const RenderOptions& options);
+
 /// The camera with the projection and the field of view that are asked for. Errors: UsageError for
 /// an angle that the projection cannot have.
 Camera projected(Camera camera, const RenderOptions& options);

@@ -72,12 +72,6 @@ LightMix mix_again(const Scene& scene, const RenderOptions& options) {
   }
 }
 
-/// The camera that options name, where it has a perspective.
-Camera opening_camera(const Scene& scene, const RenderOptions& options) {
-  const Camera camera = camera_of(scene, options);
-  return camera.projection == Projection::perspective ? camera : publish::opening_camera(scene);
-}
-
 /// Whether the sky is that of a weather file, so that a year of it can be measured.
 bool has_year(const SceneLoadOptions& load) {
   return !load.situation.weather.empty() && !load.sky && !load.sun && load.environment.file.empty();

@@ -81,7 +81,7 @@ json world_of(const Scene& scene) {
 json targets() {
   json list;
   for (const measuring::Requirement& row : measuring::known_requirements()) {
-    list.push_back({{"name", row.name}, {"lux", row.mean}});
+    if (!row.is_direct) list.push_back({{"name", row.name}, {"lux", row.mean}});
   }
   return list;
 }
@@ -134,8 +134,7 @@ class PageWriter {
     d["legendSteps"] = defaults::legend_steps;
     d["targets"] = targets();
     d["world"] = world_of(scene_);
-    const Camera& opening = room_.opening ? *room_.opening : opening_camera(scene_);
-    d["cameras"] = {camera_of(opening)};
+    d["cameras"] = {camera_of(room_.opening)};
     for (const Camera& camera : scene_.cameras) {
       if (camera.projection != Projection::perspective) continue;
       const json entry = camera_of(camera);

@@ -14,12 +14,12 @@
 
 namespace photile::publish {
 
-/// The camera that the page opens with: the first with a perspective, where there is one.
+/// The first camera with a perspective, where there is one; otherwise the first.
 const Camera& opening_camera(const Scene& scene);
 
 struct PublishedRoom {
   const Scene& scene;
-  const Camera* opening = nullptr;  ///< that the page opens with; null = the first of the scene
+  const Camera& opening;  ///< that the page opens with
   const bake::LightAtlas& atlas;
   const bake::BakedLight* light;  ///< of the atlas; null where a server sends it (serve/)
   int edition = 0;                ///< of a page whose light a server sends, from 1

@@ -63,7 +63,7 @@ LiveRoom::Edition LiveRoom::made(int number, std::shared_ptr<const Scene> scene)
   const Camera opening = parameters_.camera_of(*edition.scene);
   edition.page =
       publish::page_text({.scene = *edition.scene,
-                          .opening = &opening,
+                          .opening = opening,
                           .atlas = edition.light->atlas(),
                           .light = nullptr,
                           .edition = number,

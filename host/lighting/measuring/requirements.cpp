@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
@@ -45,12 +46,39 @@ const std::array<Requirement, 17> rows{{
     {"school-stairs", "table 44", "stairs of schools", 150, 0.40, 25, 80, 50, 50, 30},
 }};
 
+/// Emergency lighting. A tenth of what a task with a high risk needs is more than 15 lux where that
+/// is above 150.
+const std::array<Requirement, 3> emergency_rows{{
+    {.name = "escape-route",
+     .reference = "4.2",
+     .what = "centre line of an escape route",
+     .least = 1,
+     .diversity = 1.0 / 40,
+     .is_direct = true},
+    {.name = "open-area",
+     .reference = "4.3",
+     .what = "open area, against panic",
+     .least = 0.5,
+     .diversity = 1.0 / 40,
+     .is_direct = true},
+    {.name = "high-risk-task",
+     .reference = "4.4",
+     .what = "task area with a high risk",
+     .mean = 15,
+     .uniformity = 0.1,
+     .is_direct = true},
+}};
+
 const std::vector<Requirement>& all_rows() {
   static const std::vector<Requirement> all = [] {
     std::vector<Requirement> list(rows.begin(), rows.end());
     for (Requirement& row : list) {
       row.reference = "EN 12464-1:2021, " + row.reference + ", required values";
       if (!row.confirmed) row.reference += " (not confirmed: check them)";
+    }
+    for (Requirement row : emergency_rows) {
+      row.reference = "EN 1838:2013, " + row.reference + ", direct light alone";
+      list.push_back(std::move(row));
     }
     return list;
   }();
@@ -67,6 +95,8 @@ std::string known_names() {
 double* field_of(Requirement& requirement, std::string_view word) {
   if (word == "Em") return &requirement.mean;
   if (word == "Uo") return &requirement.uniformity;
+  if (word == "Emin") return &requirement.least;
+  if (word == "Ud") return &requirement.diversity;
   if (word == "UGR") return &requirement.glare;
   if (word == "Ra") return &requirement.rendering;
   if (word == "Ez") return &requirement.cylindrical;
@@ -134,6 +164,8 @@ std::vector<Judgement> judge(const GridValues& values, const Requirement& requir
     case GridRole::task:
       add(all, values, "Em", requirement.mean, figures.mean);
       add(all, values, "Uo", requirement.uniformity, figures.uniformity);
+      add(all, values, "Emin", requirement.least, figures.minimum);
+      add(all, values, "Ud", requirement.diversity, figures.diversity);
       break;
     case GridRole::surroundings:
       if (!(requirement.mean > 0)) break;
@@ -190,9 +222,10 @@ std::string glare_text(double rating, const char* format) {
 std::string judgement_text(const Judgement& judgement) {
   const double measured = judgement.measured.value;
   const bool rating = judgement.figure == "UGR" && judgement.required >= least_glare;
-  const std::string value = judgement.figure == "Uo" ? fmt::format("{:.3f}", measured)
-                            : rating                 ? glare_text(measured, "{:.4g}")
-                                                     : fmt::format("{:.4g}", measured);
+  const bool ratio = judgement.figure == "Uo" || judgement.figure == "Ud";
+  const std::string value = ratio    ? fmt::format("{:.3f}", measured)
+                            : rating ? glare_text(measured, "{:.4g}")
+                                     : fmt::format("{:.4g}", measured);
   return fmt::format("{}: {} {}, {} {:g}: {}{}", judgement.grid, judgement.figure, value,
                      judgement.at_most ? "at most" : "at least", judgement.required,
                      judgement.met() ? "met" : "NOT MET",

@@ -11,7 +11,7 @@
 
 namespace photile::measuring {
 
-/// A row of EN 12464-1:2021, or one of the user's own. 0 = nothing is required.
+/// A row of EN 12464-1:2021 or EN 1838:2013, or one of the user's own. 0 = nothing is required.
 struct Requirement {
   std::string name;        ///< "office-desk"
   std::string reference;   ///< "EN 12464-1:2021, table 34, required values"
@@ -24,19 +24,23 @@ struct Requirement {
   double wall = 0;         ///< E_m,wall, lux
   double ceiling = 0;      ///< E_m,ceiling, lux
   bool confirmed = true;   ///< by a source that prints the row of the standard
+  double least = 0;        ///< E_min, lux: at each point of the task area
+  double diversity = 0;    ///< U_d = E_min / E_max there
+  /// Whether light that surfaces reflect does not count, as in emergencies.
+  bool is_direct = false;
 };
 
 /// The rows that are known by name.
 std::span<const Requirement> known_requirements();
 
-/// "office-desk", or values of one's own: "Em=300,Uo=0.6,UGR=19", any of Em, Uo, UGR, Ra, Ez,
-/// Ewall, Eceiling. Errors: UsageError that lists the names.
+/// "office-desk", or values of one's own: "Em=300,Uo=0.6,UGR=19", any of Em, Uo, Emin, Ud,
+/// UGR, Ra, Ez, Ewall, Eceiling. Errors: UsageError that lists the names.
 Requirement parse_requirement(const std::string& text);
 
 /// One figure of a grid beside what is required.
 struct Judgement {
   std::string grid;
-  std::string figure;  ///< "Em", "Uo", "UGR"
+  std::string figure;  ///< "Em", "Uo", "Emin", "Ud", "UGR"
   double required = 0;
   Measured measured;
   bool at_most = false;  ///< whether the requirement is an upper limit
