@@ -34,7 +34,7 @@ if(TARGET photile_command)
   set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME photile)
   set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION graphics)
   set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
-  set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "weasyprint")
+  set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "weasyprint, python3-ezdxf")
   set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd, photile-openimageio, fonts-dejavu-core, xdg-utils, python3-numpy, python3-jinja2, python3-contourpy")
   set(CPACK_COMPONENT_COMMAND_DESCRIPTION
     "photon mapping on OpenCL devices, a layer per light\n Renders interiors from glTF and OBJ files, changes the lights of finished pictures, measures lux,\n and walks through scenes in a browser.")

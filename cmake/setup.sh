@@ -59,6 +59,7 @@ python3-matplotlib     | benches: plots
 python3-jinja2         | reports: pages
 python3-contourpy      | reports: isolines of plans
 weasyprint             | reports: PDF
+python3-ezdxf          | plans: DXF
 clang                  | tests: compiles every kernel file as it lies there
 python3                | scripts of the docs and the tests
 python3-dev            | the Python module

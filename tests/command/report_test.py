@@ -101,7 +101,7 @@ def check_drawing(svg, title):
         x, y = float(bar.get("x")), float(bar.get("y"))
         if x + float(bar.get("width")) > width or y + float(bar.get("height")) > height:
             fail(f"{title}: a rectangle reaches beyond the border")
-    if "lux" not in [text.text for text in texts]:
+    if title != "Luminaires" and "lux" not in [text.text for text in texts]:
         fail(f"{title}: the legend has no unit")
 
 
@@ -124,27 +124,32 @@ def main():
         if not re.match(re.escape(f"{grid['name']}: {grid['points']} points"), heading):
             fail(f"{heading!r} is no heading of {grid['name']!r}")
     tables = list(body.iter("table"))[1:]
-    if len(tables) != len(grids) + 2 or headings[len(grids):-1] != ["Luminaires", "Reflectances"]:
+    alone = [f"{grid['name']}: each light alone" for grid in grids if "plane" in grid]
+    if (len(tables) != len(grids) + 3
+            or headings[len(grids):-1] != [*alone, "Luminaires", "List of parts", "Reflectances"]):
         fail(f"{len(tables)} tables under {len(headings)} headings for {len(grids)} grids")
     for table, grid in zip(tables, grids):
         check_figures(table, grid)
-    titles = [title for grid in grids if "plane" in grid
-              for title in (grid["name"], *grid["lights"])]
+    planes = [grid for grid in grids if "plane" in grid]
+    titles = [grid["name"] for grid in planes] + [light for grid in planes for light in grid["lights"]]
+    titles.append("Luminaires")
     drawings = list(page.iter(f"{SVG}svg"))
     if len(drawings) != len(titles):
         fail(f"{len(drawings)} drawings, not {len(titles)}")
     for drawing, title in zip(drawings, titles):
         check_drawing(drawing, title)
-    if sum("mm" in drawing.get("width") for drawing in drawings) != len(PLANES):
+    if sum("mm" in drawing.get("width") for drawing in drawings) != len(PLANES) + 1:
         fail("the plans are at no scale")
     facts = dict(zip([name.text for name in body.iter("dt")],
                      [value.text for value in body.iter("dd")]))
     if facts["illuminance"] != "planar" or facts["seed"] != "1":
         fail(f"facts: {facts}")
-    lamps, reflectances = ([[cell.text for cell in row] for row in table.findall("tr")[1:]]
-                           for table in tables[len(grids):])
-    if [lamp[1] for lamp in lamps] != ["left", "right"] or lamps[0][4] != "-0.60, 0.99, 0.00":
+    lamps, parts, reflectances = ([[cell.text for cell in row] for row in table.findall("tr")[1:]]
+                                  for table in tables[len(grids):])
+    if [lamp[:2] for lamp in lamps] != [["A1", "left"], ["B2", "right"]] or lamps[0][3] != "-0.60, 0.99, 0.00":
         fail(f"lamps: {lamps}")
+    if [part[:3] for part in parts[:2]] != [["A", "1", "left"], ["B", "1", "right"]]:
+        fail(f"parts: {parts}")
     # The wall's luminance: 0.2126 x 0.7 + 0.7152 x 0.6 + 0.0722 x 0.5.
     if reflectances[0] != ["wall", "61%"]:
         fail(f"reflectances: {reflectances}")

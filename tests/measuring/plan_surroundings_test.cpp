@@ -103,6 +103,26 @@ TEST_CASE("the JSON of a plan has its lines in metres from the plane's corner") 
   CHECK(plan["room"][1][1].get<double>() == Approx(5.5).margin(0.05));
 }
 
+TEST_CASE("the JSON of a plan has north and the outlines of luminaires") {
+  Scene scene = room();
+  scene.lights[0].direction = {0, -1, 0};
+  scene.lights[0].x_axis = {0.8f, 0, -0.6f};  // (0.8, 0.6) on the plan
+  scene.lights[0].distribution = 0;
+  scene.distributions.emplace_back("a.ies", PhotometricAxes(), std::vector{0.0, 90.0},
+                                   std::vector{0.0, 360.0}, std::vector<float>(4, 1.0f));
+  scene.distributions[0].set_opening({.x = 1.2, .y = 0.3});
+  const auto plan = report::plan_json(RayScene(scene), layout(), 90);
+  REQUIRE(plan["lamps"][0]["outline"].size() == 4);
+  for (const auto& corner : plan["lamps"][0]["outline"]) {
+    const glm::dvec2 from(corner[0].get<double>() - 1, corner[1].get<double>() - 3);
+    CHECK(std::abs(glm::dot(from, glm::dvec2(0.8, 0.6))) == Approx(0.6));
+    CHECK(std::abs(glm::dot(from, glm::dvec2(-0.6, 0.8))) == Approx(0.15));
+  }
+  CHECK(plan["north"][0].get<double>() == Approx(1));
+  CHECK(plan["north"][1].get<double>() == Approx(0).margin(1e-12));
+  CHECK_FALSE(report::plan_json(RayScene(scene), layout()).contains("north"));
+}
+
 TEST_CASE("what does not lie flat has no surroundings") {
   PlaneLayout wall = layout();
   wall.v = {0, 1, 0};

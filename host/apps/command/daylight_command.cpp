@@ -121,8 +121,10 @@ void write(const DaylightOptions& options, const Scene& scene,
   const RayScene rays(scene);
   for (std::size_t i = 0; i < results.grids.size() && !options.outputs.empty(); ++i) {
     const auto& layout = results.grids[i].grid.layout;
-    if (layout) record[i]["plan"] = report::plan_json(rays, *layout);
-    planes += layout ? 1 : 0;
+    if (!layout) continue;
+    record[i]["plan"] =
+        report::plan_json(rays, *layout, options.render.load.situation.north_degrees);
+    ++planes;
   }
   write_results(options.outputs,
                 {.csv = [&] { return report::daylight_csv(results, options.asked); },

@@ -122,6 +122,14 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
   return grids;
 }
 
+/// Degrees clockwise from -z where the sky, the names of walls or the setting state it.
+std::optional<double> north_of(const MeasureOptions& options) {
+  const SceneLoadOptions& load = options.render.load;
+  const double north = load.situation.north_degrees;
+  const bool stated = north != 0 || load.sky || load.sun || load.situation.time || options.walls;
+  return stated ? std::optional(north) : std::nullopt;
+}
+
 /// Warnings before anything is measured, a line each.
 std::vector<std::string> warnings_of(const Scene& scene, const LightMix& mix,
                                      const std::vector<measuring::SensorGrid>& grids) {
@@ -211,7 +219,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
                      ? measuring::room_size(scene, plane_at(options.places.plane, "floor").inside)
                      : std::nullopt,
                  loading::ground_reflectance(render.load), loading::sky_facts(render.load),
-                 std::move(warnings)});
+                 std::move(warnings), north_of(options)});
   for (const auto& line : report::measurement_lines(measurement, outputs.unit())) {
     std::cout << line << '\n';
   }
@@ -238,9 +246,9 @@ void add_measuring(CLI::App& command, MeasureOptions& options) {
   const OptionGroup measuring(command, "Measuring");
   measuring.flag("--cylindrical", options.cylindrical,
                  "cylindrical illuminance around the direction of each point, which must point up");
-  measuring.flag(
-      "--daylight-factor", options.daylight_factor,
-      "per cent of the illuminance on open ground under the CIE overcast sky; .csv, .json, .svg");
+  measuring.flag("--daylight-factor", options.daylight_factor,
+                 "per cent of the illuminance on open ground under the CIE overcast sky; .csv, "
+                 ".json, .svg, .dxf");
   measuring.add("--target", options.target, "NAME|VALUES",
                 "requirements, by name (office-desk: EN 12464-1; escape-route: EN 1838, by direct "
                 "light alone) or values (Em=500,Uo=0.6)");

@@ -86,7 +86,7 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
   const RayScene rays(run.scene);
   for (std::size_t i = 0; i < measurement.size(); ++i) {
     const auto& layout = measurement[i].grid.layout;
-    if (layout) record["grids"][i]["plan"] = report::plan_json(rays, *layout);
+    if (layout) record["grids"][i]["plan"] = report::plan_json(rays, *layout, run.north);
   }
   return record;
 }
@@ -106,9 +106,10 @@ std::string logo_of(const std::filesystem::path& file) {
 
 void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options) {
   const OptionGroup output(command, "Output");
-  output.repeat("-o,--output", options.outputs, "FILE",
-                "table (.csv, .json), plan (.svg) or report (.html, .pdf) to write; repeatable",
-                file_ending_in({".csv", ".json", ".svg", ".html", ".pdf"}));
+  output.repeat(
+      "-o,--output", options.outputs, "FILE",
+      "table (.csv, .json), plan (.svg, .dxf) or report (.html, .pdf) to write; repeatable",
+      file_ending_in({".csv", ".json", ".svg", ".dxf", ".html", ".pdf"}));
   output.add("--honeybee", options.honeybee, "FOLDER",
              "folder for <grid>.res, grids_info.json and grid_summary.csv");
   output.add("--picture", options.picture, "FILE.exr",
@@ -129,6 +130,7 @@ void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options
            "language of the report: en, de, or one whose texts --template has")
       ->capture_default_str();
   add_template_option(output, options.report);
+  options.false_colour.scale = "auto";
   add_false_colour_options(command, options.false_colour);
 }
 
@@ -139,7 +141,7 @@ MeasureOutputs::MeasureOutputs(MeasureOutputOptions& options)
   if (options.daylight_factor) colours_.scale = 0;  // a scale for lux would show nothing
   const bool reports = has_any(options.outputs, {".html", ".pdf"});
   if (options.daylight_factor && reports) {
-    throw UsageError("reports are in lux; write daylight factors to .csv, .json or .svg");
+    throw UsageError("reports are in lux; write daylight factors to .csv, .json, .svg or .dxf");
   }
   const auto only_in_reports = [&](const char* option, bool given) {
     if (!given || reports) return;

@@ -23,7 +23,7 @@ class App;
 namespace photile::app {
 
 struct MeasureOutputOptions {
-  std::vector<std::string> outputs;  ///< -o: .csv, .json, .svg, .html or .pdf
+  std::vector<std::string> outputs;  ///< -o: .csv, .json, .svg, .dxf, .html or .pdf
   FalseColourOptions false_colour;
   std::string honeybee;                   ///< folder, "" = none
   std::string picture;                    ///< EXR for the report, "" = none
@@ -50,7 +50,8 @@ struct MeasureRun {
   std::optional<double> ground = std::nullopt;  ///< its reflectance; none without a sky
   /// What the sky is: name and value.
   std::vector<std::pair<std::string, std::string>> sky = {};
-  std::vector<std::string> warnings = {};  ///< of the scene, the points and the lights
+  std::vector<std::string> warnings = {};      ///< of the scene, the points and the lights
+  std::optional<double> north = std::nullopt;  ///< degrees clockwise from -z; none = not stated
 };
 
 class MeasureOutputs {
@@ -60,7 +61,7 @@ class MeasureOutputs {
   explicit MeasureOutputs(MeasureOutputOptions& options);
 
   /// Notes the files whose names follow from what is measured: a plan of each plane goes to the
-  /// .svg, numbered where there are several, and a file of each grid to the folder.
+  /// .svg or .dxf, numbered where there are several, and a file of each grid to the folder.
   /// Errors: UsageError where a plan is asked for and there is no plane, or where two grids have
   /// one file; those of note_output.
   void check_names(const std::vector<measuring::SensorGrid>& grids) const;

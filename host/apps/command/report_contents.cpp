@@ -94,7 +94,7 @@ std::vector<double> lumens_of(const Scene& scene, const LightMix& mix) {
 
 void note_plans(const std::vector<std::string>& files, std::size_t plans) {
   for (const std::string& file : files) {
-    if (!ends_in(file, ".svg")) continue;
+    if (!is_plan(file)) continue;
     if (plans == 0) {
       throw UsageError(
           fmt::format("{}: points have no plan; give a plane, by --plane or --grid", file));
@@ -149,6 +149,7 @@ void add_scene(const Scene& scene, const LightMix& mix, nlohmann::ordered_json& 
                      {"watts", part.watts},
                      {"flux", part.lamp->flux()},
                      {"ra", part.lamp->data().rendering},
+                     {"round", part.lamp->opening().shape != LuminousOpening::Shape::box},
                      {"data", report::data_rows(*part.lamp)},
                      {"intensities", {{"C0", planes[0]}, {"C90", planes[1]}}}});
   }

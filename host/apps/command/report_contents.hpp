@@ -31,8 +31,8 @@ struct Results {
 /// Whether any of the files ends in one of these, in small letters or capitals.
 bool has_any(const std::vector<std::string>& files, std::initializer_list<const char*> endings);
 
-/// Writes each file: a .csv, .json, .html or .pdf, and plans to each .svg, numbered where they are
-/// more than one. Makes of `results` what the files ask for. Errors: OutputError; those of
+/// Writes each file: a .csv, .json, .html or .pdf, and plans to each .svg or .dxf, numbered where
+/// they are more than one. Makes of `results` what the files ask for. Errors: OutputError; those of
 /// draw_report.
 void write_results(const std::vector<std::string>& files, const Results& results);
 

@@ -112,12 +112,12 @@ void add_template_option(const OptionGroup& group, ReportOptions& options) {
             "your own templates for reports and plans: style.css, report.html, plan.svg");
 }
 
+bool is_plan(const std::string& file) { return ends_in(file, ".svg") || ends_in(file, ".dxf"); }
+
 std::vector<std::string> drawn_files(const std::vector<std::string>& files) {
   std::vector<std::string> drawn;
   for (const std::string& file : files) {
-    if (ends_in(file, ".html") || ends_in(file, ".pdf") || ends_in(file, ".svg")) {
-      drawn.push_back(file);
-    }
+    if (ends_in(file, ".html") || ends_in(file, ".pdf") || is_plan(file)) drawn.push_back(file);
   }
   return drawn;
 }
@@ -127,7 +127,8 @@ std::vector<fs::path> plan_names(const fs::path& file, std::size_t plans) {
   std::vector<fs::path> names;
   for (std::size_t i = 1; i <= plans; ++i) {
     names.push_back(file);
-    names.back().replace_filename(fmt::format("{}-{}.svg", file.stem().string(), i));
+    names.back().replace_filename(
+        fmt::format("{}-{}{}", file.stem().string(), i, file.extension().string()));
   }
   return names;
 }
@@ -165,7 +166,7 @@ void draw_report(const nlohmann::ordered_json& record, const ReportOptions& opti
   add_template(options, arguments);
   run_program(record, folder.path(), std::move(arguments));
   for (const std::string& file : drawn) {
-    const std::size_t count = ends_in(file, ".svg") ? plans : 1;
+    const std::size_t count = is_plan(file) ? plans : 1;
     const auto from = plan_names(scratch(file), count), to = plan_names(file, count);
     for (std::size_t i = 0; i < count; ++i) write_file(to[i], read_own_text(from[i]));
   }

@@ -27,7 +27,10 @@ struct ReportOptions {
 /// Adds --template.
 void add_template_option(const OptionGroup& group, ReportOptions& options);
 
-/// Those of the files that photile.report draws: .html, .pdf and .svg.
+/// Whether a file gets a plan: .svg or .dxf.
+bool is_plan(const std::string& file);
+
+/// Those of the files that photile.report draws: plans, .html and .pdf.
 std::vector<std::string> drawn_files(const std::vector<std::string>& files);
 
 /// Reads the results, and makes sure, before anything is measured, that all of `files` can be drawn

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "command/terminal_progress.hpp"
 #include "image/light_change.hpp"
@@ -14,6 +15,7 @@
 #include "measuring/measurement.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/defaults.hpp"
+#include "report/tables.hpp"
 #include "scene/panes.hpp"
 #include "scene/scene_queries.hpp"
 #include "scene/surface_models.hpp"
@@ -84,6 +86,17 @@ std::vector<StatedPower> stated_powers(const Scene& scene, const LightMix& mix) 
                       file == none ? 0 : scene.distributions[file].electrical_watts(lumens)});
   }
   return stated;
+}
+
+/// ", 1200 lm", ", 80,000 lux" facing the sun, or "" of surroundings.
+std::string emission_text(const Scene& scene, const Light& light, const StatedPower& stated,
+                          double lumen_per_watt) {
+  if (!light.is_distant()) {
+    return ", " + format_power_in_lumens(stated.power, stated.unit, lumen_per_watt);
+  }
+  if (light.kind != LightKind::directional) return "";
+  const double disc = std::numbers::pi * std::pow(bounding_sphere(scene).radius, 2);
+  return ", " + report::grouped(stated.lumens / disc, 4) + " lux";
 }
 
 /// Radiant watts of luminaires with photometric files would be mistaken for electric power.
@@ -199,19 +212,9 @@ Extents extents_of(const Scene& scene) {
 }
 
 std::vector<std::string> sky_summary(const LightMix& mix) {
-  const std::vector<std::uint32_t> patch_of = loading::patch_of_layers(mix);
-  double power = 0;
-  PowerUnit unit = PowerUnit::lumen;
-  std::size_t patches = 0;
-  for (std::size_t i = 0; i < mix.lights.size(); ++i) {
-    if (patch_of[i] == none) continue;
-    patches = std::max<std::size_t>(patches, patch_of[i]);
-    power += mix.lights[i].power;
-    unit = mix.lights[i].unit;
-  }
+  const std::size_t patches = loading::patches_of(mix).size();
   if (patches == 0) return {};
-  return {fmt::format("sky: {} patches and the ground, a light each: {}", patches,
-                      format_power_in_lumens(power, unit, mix.lumen_per_watt))};
+  return {fmt::format("sky: {} patches and the ground, a light each", patches)};
 }
 
 std::vector<std::string> sky_lines(const SceneLoadOptions& load) {
@@ -241,8 +244,8 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
     const std::string source = source_of(scene, light);
     const double watts = powers[i].electrical_watts;
     lines.push_back(fmt::format(
-        "light: {}: {}, {}{}{}{}", light.name, kind_name(light),
-        format_power_in_lumens(powers[i].power, powers[i].unit, mix.lumen_per_watt),
+        "light: {}: {}{}{}{}{}", light.name, kind_name(light),
+        emission_text(scene, light, powers[i], mix.lumen_per_watt),
         watts > 0 ? fmt::format(", takes {}", format_power(watts, PowerUnit::watt)) : "",
         light.group.empty() ? "" : ", of group " + light.group,
         source.empty() ? "" : ", from " + source));

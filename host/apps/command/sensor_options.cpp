@@ -127,8 +127,8 @@ std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
                                 count, all, mark));
     }
     if (blank == 0) continue;
-    progress.note(fmt::format("{}: {} of {} points are blank: they lie {}", grid.name, blank, all,
-                              reasons_of(grid, known)));
+    progress.note(fmt::format("{}: {} of {} points are left out: they lie {}", grid.name, blank,
+                              all, reasons_of(grid, known)));
   }
   return left;
 }

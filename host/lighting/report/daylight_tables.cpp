@@ -168,7 +168,7 @@ std::vector<std::string> daylight_lines(const DaylightResults& results,
     const daylight::RoomDaylight& room = grid.room;
     lines.push_back(fmt::format(
         "{}: {} points{}", grid.grid.name, grid.grid.sensors.size(),
-        grid.grid.blanks.empty() ? "" : fmt::format(", and {} blank", grid.grid.blanks.size())));
+        grid.grid.blanks.empty() ? "" : fmt::format(", and {} left out", grid.grid.blanks.size())));
     lines.push_back(fmt::format("  annual mean      {:.4g} lux, +-{:.1f}% a point", room.mean_lux,
                                 100 * mean_error(grid)));
     const auto error = [&](auto&& member) {

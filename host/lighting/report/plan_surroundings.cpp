@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <glm/gtc/constants.hpp>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -203,6 +204,38 @@ std::vector<Segment> furniture_of(const RayScene& rays, const measuring::PlaneLa
   return outlines;
 }
 
+/// The convex hull of an area light's surface, or of the opening that its photometric file states.
+std::vector<glm::dvec2> outline_of(const Scene& scene, const Light& light, const Frame& frame) {
+  std::vector<glm::dvec2> corners;
+  for (const std::uint32_t triangle : light.triangles) {
+    for (const glm::vec3& corner : scene.corners(triangle)) {
+      corners.push_back(frame.cells_of(glm::dvec3(corner)));
+    }
+  }
+  if (light.has_position() && light.distribution != none) {
+    const LuminousOpening& opening = scene.distributions[light.distribution].opening();
+    const glm::dvec3 x(light.x_axis), y = glm::cross(x, glm::dvec3(light.direction));
+    for (const double right : {-0.5, 0.5}) {
+      for (const double ahead : {-0.5, 0.5}) {
+        corners.push_back(frame.cells_of(glm::dvec3(light.position) + right * opening.x * x +
+                                         ahead * opening.y * y));
+      }
+    }
+  }
+  std::vector<glm::dvec2> hull;  // corners that lie farthest in one of many directions
+  constexpr int directions = 64;
+  for (int i = 0; i < directions && !corners.empty(); ++i) {
+    const double angle = glm::two_pi<double>() * (i + 0.5) / directions;
+    const glm::dvec2 there(std::cos(angle), std::sin(angle));
+    const auto farthest = std::max_element(
+        corners.begin(), corners.end(),
+        [&](const auto& a, const auto& b) { return glm::dot(a, there) < glm::dot(b, there); });
+    if (hull.empty() || hull.back() != *farthest) hull.push_back(*farthest);
+  }
+  if (hull.size() > 1 && hull.front() == hull.back()) hull.pop_back();
+  return hull;
+}
+
 }  // namespace
 
 std::optional<glm::dvec3> place_of(const Scene& scene, const Light& light) {
@@ -232,7 +265,8 @@ PlanSurroundings surroundings_of(const RayScene& rays, const measuring::PlaneLay
   for (std::size_t light = 0; light < scene.lights.size(); ++light) {
     const auto place = place_of(scene, scene.lights[light]);
     if (!place || !frame.shows(frame.cells_of(*place))) continue;
-    around.lamps.push_back({light + 1, frame.cells_of(*place)});
+    around.lamps.push_back(
+        {light + 1, frame.cells_of(*place), outline_of(scene, scene.lights[light], frame)});
   }
   const trace::PlanAxes axes;
   glm::dvec3 middle = layout.origin + 0.5 * (layout.u + layout.v);
@@ -309,7 +343,8 @@ std::string path_of(const std::vector<Segment>& segments, const glm::dvec2& cell
 
 }  // namespace
 
-nlohmann::ordered_json plan_json(const RayScene& rays, const measuring::PlaneLayout& layout) {
+nlohmann::ordered_json plan_json(const RayScene& rays, const measuring::PlaneLayout& layout,
+                                 std::optional<double> north) {
   const PlanSurroundings around = surroundings_of(rays, layout);
   const glm::dvec2 cell(glm::length(layout.u) / layout.columns,
                         glm::length(layout.v) / layout.rows);
@@ -321,7 +356,16 @@ nlohmann::ordered_json plan_json(const RayScene& rays, const measuring::PlaneLay
                               {"furniture", path_of(around.furniture, cell)},
                               {"lamps", nlohmann::ordered_json::array()}};
   for (const LampMark& lamp : around.lamps) {
-    json["lamps"].push_back({{"number", lamp.number}, {"position", metres(lamp.place)}});
+    auto outline = nlohmann::ordered_json::array();
+    for (const glm::dvec2& corner : lamp.outline) outline.push_back(metres(corner));
+    json["lamps"].push_back(
+        {{"number", lamp.number}, {"position", metres(lamp.place)}, {"outline", outline}});
+  }
+  if (north && around.reach > 0) {
+    const measuring::PlaneLayout placed = measuring::in_scene(rays.scene(), layout);
+    const glm::dvec3 there(std::sin(glm::radians(*north)), 0, -std::cos(glm::radians(*north)));
+    json["north"] = {glm::dot(there, glm::normalize(placed.u)),
+                     glm::dot(there, glm::normalize(placed.v))};
   }
   if (const auto& room = around.room) json["room"] = {metres((*room)[0]), metres((*room)[1])};
   return json;

@@ -28,6 +28,7 @@ std::vector<Segment> isoline(std::span<const double> values, int columns, int ro
 struct LampMark {
   std::size_t number;  ///< from 1, that of the scene's light
   glm::dvec2 place;
+  std::vector<glm::dvec2> outline;  ///< convex, of what shines; empty without a size
 };
 
 /// Positions are counted in the plane's cells, from its corner, and may lie beyond its sides.
@@ -48,6 +49,8 @@ PlanSurroundings surroundings_of(const RayScene& rays, const measuring::PlaneLay
 
 /// They as JSON has them: walls and furniture are paths of SVG, in metres along the plane's sides
 /// from its corner.
-nlohmann::ordered_json plan_json(const RayScene& rays, const measuring::PlaneLayout& layout);
+///   north   degrees clockwise from -z as seen from above; none = not shown
+nlohmann::ordered_json plan_json(const RayScene& rays, const measuring::PlaneLayout& layout,
+                                 std::optional<double> north = std::nullopt);
 
 }  // namespace photile::report

@@ -201,7 +201,7 @@ std::vector<std::string> measurement_lines(const measuring::Measurement& measure
       heading += fmt::format(", {:.2f} m apart", values.grid.layout->spacing());
     }
     if (!values.grid.blanks.empty()) {
-      heading += fmt::format(", and {} blank", values.grid.blanks.size());
+      heading += fmt::format(", and {} left out", values.grid.blanks.size());
     }
     lines.push_back(heading);
     for (const auto& [mark, count] : measuring::counted_marks(values.grid)) {

@@ -16,7 +16,7 @@ from typing import Any
 # Exit codes are those of the command photile.
 USAGE, INPUT, OUTPUT = 2, 3, 1
 _packages = {"jinja2": "python3-jinja2", "numpy": "python3-numpy", "contourpy": "python3-contourpy",
-             "weasyprint": "weasyprint"}
+             "weasyprint": "weasyprint", "ezdxf": "python3-ezdxf"}
 _not_in_xml = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
@@ -91,11 +91,11 @@ def _draw(record: dict[str, Any], outputs: Sequence[str], template: str | None) 
             write(file, page.encode())
         elif ending == ".pdf":
             write(file, pages.printed(page))
-        elif ending == ".svg":
-            plans = report.plans()
+        else:
+            plans = report.drawings() if ending == ".dxf" else [plan.encode() for plan in report.plans()]
             for number, plan in enumerate(plans, 1):
-                name = file.name if len(plans) == 1 else f"{file.stem}-{number}.svg"
-                write(file.with_name(name), plan.encode())
+                name = file.name if len(plans) == 1 else f"{file.stem}-{number}{file.suffix}"
+                write(file.with_name(name), plan)
 
 
 def _make_honeybee(options: argparse.Namespace) -> None:
@@ -123,7 +123,7 @@ def _run(arguments: Sequence[str] | None) -> None:
     parser = argparse.ArgumentParser(prog="photile.report", allow_abbrev=False, description=__doc__)
     parser.add_argument("record", metavar="RESULTS.json", help="results of photile measure -o")
     parser.add_argument("-o", "--output", action="append", default=[], metavar="FILE",
-                        help="report (.html, .pdf) or plan (.svg) to write; repeatable")
+                        help="report (.html, .pdf) or plan (.svg, .dxf) to write; repeatable")
     parser.add_argument("--template", metavar="FOLDER", help="folder of templates that replace photile's")
     parser.add_argument("--language", help="language of the report: en, de, or NAME of FOLDER/words/NAME.json")
     parser.add_argument("--check", action="store_true",
@@ -137,10 +137,10 @@ def _run(arguments: Sequence[str] | None) -> None:
     if options.ugr_table:
         return _make_ugr_table(options)
     endings = {pathlib.Path(output).suffix.lower() for output in options.output}
-    if not endings or not endings <= {".html", ".pdf", ".svg"}:
-        raise Failure(USAGE, "-o: name an .html, .pdf or .svg file")
+    if not endings or not endings <= {".html", ".pdf", ".svg", ".dxf"}:
+        raise Failure(USAGE, "-o: name an .html, .pdf, .svg or .dxf file")
     _require("reports need", "; or write .csv or .json", "jinja2", "numpy", "contourpy",
-             *(["weasyprint"] if ".pdf" in endings else []))
+             *(["weasyprint"] if ".pdf" in endings else []), *(["ezdxf"] if ".dxf" in endings else []))
     from . import pages
     record = _read(options.record)
     if not isinstance(record, dict):
@@ -156,7 +156,7 @@ def _run(arguments: Sequence[str] | None) -> None:
         raise Failure(USAGE, str(error)) from None
     except pages.BadInput as error:
         raise Failure(INPUT, str(error)) from None
-    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
         raise Failure(INPUT, f"{options.record}: these are not results of photile measure -o: "
                              f"{type(error).__name__} {error}") from error
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from . import texts
+from .isolines import most_cells
 
 most_observers = 12  # more do not fit on a page
-most_cells = 4_000_000
 Table = dict[str, Any]
 
 
@@ -40,8 +40,9 @@ def _glare_table(observers: list[dict[str, Any]]) -> Table:
                      texts.glare(rating) if rating is not None and rating < texts.least_glare
                      else _measured(each, "ugr", 1),
                      _measured(each, "dgp", 3), _measured(each, "illuminance", 0)])
-    return {"heading": "Glare", "of": (most_observers, len(ranked)) if more else None, "words": None,
-            "columns": ["observer", "eyes (x, y, z), m", "UGR", "DGP", "lux at the eye"], "rows": rows}
+    return {"heading": "Glare", "of": (most_observers, len(ranked)) if more else None,
+            "words": (0,), "names": (), "rows": rows,
+            "columns": ["observer", "eyes (x, y, z), m", "UGR", "DGP", "lux at the eye"]}
 
 
 def _daylight_table(grids: list[dict[str, Any]]) -> Table:
@@ -53,11 +54,11 @@ def _daylight_table(grids: list[dict[str, Any]]) -> Table:
         return f"{text}%" if error is None else f"{text} \u00b1 {100 * error:.2g}%"
 
     rows = [[grid["name"], f"{grid['mean_lux']:.0f}", *(share(grid, key) for key in ("DA", "sDA", "ASE")),
-             *(f"{grid['EN 17037'][key]:.0f} lux" for key in ("target_lux", "minimum_target_lux"))]
+             *(f"{grid['EN 17037'][key]:.0f}" for key in ("target_lux", "minimum_target_lux"))]
             for grid in grids]
-    return {"heading": "A year of daylight", "of": None, "words": 0, "rows": rows,
-            "columns": ["grid", "mean, lux", "DA", "sDA", "ASE", "EN 17037: half of the area",
-                        "95% of it"]}
+    return {"heading": "A year of daylight", "of": None, "words": (0,), "names": (), "rows": rows,
+            "columns": ["grid", "mean, lux", "DA", "sDA", "ASE", "EN 17037: half of the area, lux",
+                        "95% of it, lux"]}
 
 
 class Map:

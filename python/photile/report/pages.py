@@ -15,7 +15,9 @@ import numpy as np
 
 from . import texts
 from .included import Included, Map
+from .luminaires import Luminaires
 from .plans import Curve, Plan
+from .scale import fitted
 
 most_light_plans = 6  # more do not fit on a page
 Pairs = list[tuple[str, str]]
@@ -61,9 +63,11 @@ class Report:
             autoescape=True, trim_blocks=True, lstrip_blocks=True,
             loader=jinja2.ChoiceLoader([*(jinja2.FileSystemLoader(one) for one in self._folders),
                                         jinja2.PrefixLoader({"photile": jinja2.FileSystemLoader(_own)})]))
-        self._environment.filters |= {"css": _css, "number": texts.number, "grouped": texts.grouped,
-                                      "place": texts.place}
+        self._environment.filters |= {
+            "css": _css, "figure": self._words.figure,
+            "number": lambda value, digits: self._words.figure(texts.number(value, digits))}
         self._environment.globals |= {"_": self._words, "embedded": self._embedded}
+        self._luminaires = Luminaires(record)
         self._included = Included()
         for each in self._about["included"]:
             try:
@@ -99,32 +103,57 @@ class Report:
                 return f"data:image/{kind};base64,{base64.b64encode(file.read_bytes()).decode()}"
         raise BadInput(f"{name}: the folder of templates has no such file")
 
-    def _plan(self, grid: dict[str, Any], values: list[float | None], title: str,
-              colours: dict[str, Any], small: bool) -> Any:
-        drawn = self._rendered("plan.svg", plan=Plan(grid, values, title, colours, small))
-        return markupsafe.Markup(drawn)
+    def _drawn(self, plan: Plan) -> Any:
+        return markupsafe.Markup(self._rendered("plan.svg", plan=plan))
 
-    def _plan_of_grid(self, grid: dict[str, Any], light: str = "") -> Any:
+    def _plan_of_grid(self, grid: dict[str, Any], light: str = "") -> Plan:
+        """A plan of all lights on the scale that all grids share, or of one light on its own: a weak lamp
+        would show nothing on the scale of all."""
         colours = self._about["colours"]
-        if not light:
-            return self._plan(grid, [sensor["lux"] for sensor in grid["sensors"]],
-                              self._words(grid["name"]), colours, False)
-        # A separate scale: a weak lamp would show nothing on the scale of all.
-        return self._plan(grid, [sensor["lights"][light]["lux"] for sensor in grid["sensors"]], light,
-                          {**colours, "scale": 0}, True)
+        if light:
+            values = [sensor["lights"][light]["lux"] for sensor in grid["sensors"]]
+            return Plan(grid, values, light, {**colours, "scale": 0}, self._words, small=True)
+        shared = fitted(colours, [np.array([sensor["lux"] for sensor in each["sensors"]], float)
+                                  for each in self._record["grids"] if "plane" in each])
+        return Plan(grid, [sensor["lux"] for sensor in grid["sensors"]], self._words(grid["name"]), shared,
+                    self._words, self._luminaires)
 
-    def _plan_of_map(self, one: Map, small: bool) -> Any:
+    def _plan_of_luminaires(self) -> Any:
+        """The plan that shows most of them, without values; "" where none does."""
+        def count(grid: dict[str, Any]) -> int:
+            return len((grid.get("plan") or {}).get("lamps", []))
+
+        grid: dict[str, Any] = max(self._record.get("grids", []), key=count, default={})
+        if not count(grid):
+            return ""
+        bare = {"plane": {**grid["plane"], "cells": []}, "plan": grid["plan"]}
+        return self._drawn(Plan(bare, [], self._words("Luminaires"), self._about["colours"], self._words,
+                                self._luminaires, pages=("portrait",)))
+
+    def _plan_of_map(self, one: Map, small: bool) -> Plan:
         palette = self._about["colours"]["palette"]
         figure = self._words(one.figure)
         title = figure if small else f"{self._words(one.grid)}: {figure}"
-        return self._plan(one.values, one.numbers, title, {**one.colours, "palette": palette}, small)
+        return Plan(one.values, one.numbers, title, {**one.colours, "palette": palette}, self._words,
+                    self._luminaires, small)
+
+    def _plans(self) -> list[Plan]:
+        """Of each plane, or for a year of each figure on it."""
+        grids = self._record.get("grids", [])
+        if grids:
+            return [self._plan_of_grid(grid) for grid in grids if "plane" in grid]
+        return [self._plan_of_map(one, False) for one in self._included.maps]
 
     def plans(self) -> list[str]:
         """SVG of each plane, or for a year of each figure on it."""
-        grids = self._record.get("grids", [])
-        if grids:
-            return [str(self._plan_of_grid(grid)) for grid in grids if "plane" in grid]
-        return [str(self._plan_of_map(one, False)) for one in self._included.maps]
+        return [str(self._drawn(plan)) for plan in self._plans()]
+
+    def drawings(self) -> list[bytes]:
+        """DXF of each plane."""
+        dxf = importlib.import_module(".dxf", __package__)  # needs ezdxf, which pages do without
+        return [dxf.Drawing(grid, [sensor["lux"] for sensor in grid["sensors"]], self._luminaires,
+                            self._words).written()
+                for grid in self._record.get("grids", []) if "plane" in grid]
 
     def page(self) -> str:
         """An HTML page that needs no other file and prints on numbered pages of A4. Well-formed XML."""
@@ -139,6 +168,7 @@ class Report:
         minimum, lights = grid["statistics"]["Emin"], grid.get("lights", {})
         plane = grid.get("plane")
         drawn = list(lights) if plane and 0 < len(lights) <= most_light_plans else []
+        plan = self._plan_of_grid(grid) if plane else None
         heading = self._words("{}: {} points", self._words(grid["name"]), grid["points"])
         if plane:
             wide, high = (float(np.linalg.norm(plane[side])) for side in ("u", "v"))
@@ -146,9 +176,9 @@ class Report:
                                    wide / plane["columns"])
         remarks = []
         for text, reasons in (
-                ("\u00d7 {} points are not measured: {}.",
+                ("\u00d7 {} points are left out: {}.",
                  [point["reason"] for point in grid.get("blank", [])]),
-                ("\u00d7 {} points are measured, but marked: {}.",
+                ("\u00d7 {} points are measured, but doubtful: {}.",
                  [sensor["mark"] for sensor in grid["sensors"] if "mark" in sensor])):
             remarks += [self._words(text, reasons.count(reason), self._words(reason))
                         for reason in dict.fromkeys(reasons)]
@@ -157,14 +187,14 @@ class Report:
         return {"heading": heading, "remarks": remarks, "noisy": noisy,
                 "rows": [("", grid["statistics"]), *lights.items()],
                 "statistics": grid["statistics"], "name": grid["name"],
-                "plan": self._plan_of_grid(grid) if plane else "",
-                "plans": [self._plan_of_grid(grid, light) for light in drawn]}
+                "plan": self._drawn(plan) if plan else "", "page": plan.page if plan else "",
+                "plans": [self._drawn(self._plan_of_grid(grid, light)) for light in drawn]}
 
     def _maps(self) -> list[tuple[str, list[Any]]]:
         """Drawings side by side, under the name of their grid."""
         grids: dict[str, list[Any]] = {}
         for one in self._included.maps:
-            grids.setdefault(one.grid, []).append(self._plan_of_map(one, True))
+            grids.setdefault(one.grid, []).append(self._drawn(self._plan_of_map(one, True)))
         return list(grids.items())
 
     def _judgements(self) -> list[dict[str, Any]]:
@@ -178,14 +208,14 @@ class Report:
                          "text": self._words("see photile glare"), "met": None})
         if target["ra"] > 0:
             least = min((part["ra"] for part in self._record["photometry"]), default=0)
-            said = "by" if least > 0 else "see"
-            text = self._words(f"{said} the luminaires' data sheets")
+            text = self._words("by the luminaires' data sheets" if least > 0
+                               else "see the luminaires' data sheets")
             rows.append({"grid": "", "figure": "Ra", "at_most": False, "required": target["ra"],
-                         "text": f"{least:g}, {text}" if least > 0 else text,
+                         "text": self._words.figure(f"{least:g}") + f", {text}" if least > 0 else text,
                          "met": least >= target["ra"] if least > 0 else None})
         for each in rows:
             if each["figure"] == "UGR" and "value" in each:
-                each["text"] = texts.glare(each["value"])
+                each["text"] = self._words.figure(texts.glare(each["value"]))
         return rows
 
     def _energy(self) -> Pairs:
@@ -198,13 +228,13 @@ class Report:
             rows.append(("installed power", f"{texts.grouped(power, 4)} W"))
             if area > 0:
                 mean = record["grids"][0]["statistics"]["Em"]["value"] or 0
-                more = f", {100 * power / area / mean:.2f} W/m2 / 100 lx" if mean > 0 else ""
-                rows.append(("power density", f"{power / area:.2f} W/m2{more}"))
+                more = f", {100 * power / area / mean:.2f} W/m\u00b2 / 100 lx" if mean > 0 else ""
+                rows.append(("power density", f"{power / area:.2f} W/m\u00b2{more}"))
         energy = self._included.kilowatt_hours
         if energy > 0 and area > 0:
             rows.append(("LENI (EN 15193)",
-                         f"{energy / area:.1f} kWh/(m2 a), {energy:.0f} kWh / a"))
-        return rows
+                         f"{energy / area:.1f} kWh/(m\u00b2 a), {energy:.0f} kWh / a"))
+        return [(name, self._words.figure(value)) for name, value in rows]
 
     def _facts(self) -> Pairs:
         record = self._record
@@ -216,15 +246,14 @@ class Report:
         else:
             facts = [("illuminance", record["response"])]
         maintenance = record.get("maintenance", "")
-        facts += [("maintenance factor", f"{record['maintenance_factor']:.3g}"
-                   + (f" = {maintenance}" if maintenance else "")),
+        facts += [("maintenance factor", self._words.figure(
+            f"{record['maintenance_factor']:.3g}" + (f" = {maintenance}" if maintenance else ""))),
                   ("measured", self._words("{} times with {} rays a point", record["repeats"],
                                           record["rays"]))]
         if not year:
             by_paths = record["integrator"] == "path"
             facts += [("light by", "path tracing" if by_paths else self._words(
-                "photon maps, {} photons, k = {}", texts.count(record["photons"]),
-                record["neighbours"])),
+                "photon maps, {:,} photons, k = {}", record["photons"], record["neighbours"])),
                       ("errors", "standard errors of the mean of the repeats")]
         facts.append(("seed", str(record["seed"])))
         if "mood" in record:
@@ -234,45 +263,52 @@ class Report:
 
     def _tables(self) -> list[dict[str, Any]]:
         """Luminaires, parts with totals, reflectances."""
-        record = self._record
-        parts, rows = record.get("photometry", []), []
-        for part in parts:
-            data = dict(part["data"])
-            rows.append([str(part["pieces"]), data.get("maker", ""), data.get("article", ""),
-                         data.get("luminaire") or part["name"], part["lumens"], part["watts"]])
+        record, parts = self._record, self._luminaires.parts
+        rows = [self._row(part.tag, part.pieces, part.lines(), part.lumens, part.watts, part.pieces)
+                for part in parts]
         if len(parts) > 1:
-            all_known = all(part["watts"] > 0 for part in parts)
-            rows.append([str(sum(part["pieces"] for part in parts)), self._words("together"), "", "",
-                         sum(part["lumens"] for part in parts),
-                         sum(part["watts"] for part in parts) if all_known else 0])
-        for row in rows:
-            lumens, watts = row[-2:]
-            row[-2:] = [f"{texts.grouped(lumens, 4)} lm",
-                        f"{texts.grouped(watts, 4)} W" if watts > 0 else "",
-                        f"{lumens / watts:.0f} lm/W" if watts > 0 else ""]
-        lamps = [[str(lamp["number"]), lamp["name"], lamp["kind"], lamp["file"],
+            all_known = all(part.watts > 0 for part in parts)
+            rows.append(self._row("", sum(part.pieces for part in parts), [self._words("together")],
+                                  sum(part.lumens for part in parts),
+                                  sum(part.watts for part in parts) if all_known else 0))
+        lamps = [[self._luminaires.tag(int(lamp["number"])), lamp["name"], lamp["kind"],
                   texts.place(lamp["position"]), f"{texts.grouped(lamp['lumens'], 4)} lm"]
-                for lamp in record.get("luminaires", [])]
+                 for lamp in self._luminaires.rows]
         surfaces = [[each["material"], f"{100 * each['reflectance']:.0f}%"]
                     for each in record.get("reflectances", [])]
         return [
-            {"heading": "Luminaires", "of": None, "words": 2, "rows": lamps,
-             "columns": ["number", "name", "kind", "photometric file", "position (x, y, z), m",
-                         "luminous flux"]},
-            {"heading": "List of parts", "of": None, "words": None, "rows": rows,
-             "columns": ["pieces", "maker", "article", "luminaire", "luminous flux", "power",
-                         "luminous efficacy"]},
-            {"heading": "Reflectances", "of": None, "words": None, "rows": surfaces,
+            {"heading": "Luminaires", "of": None, "words": (2,), "names": (0, 1), "rows": lamps,
+             "plan": self._plan_of_luminaires(), "columns": ["number", "name", "kind", "position (x, y, z), m", "luminous flux"]},
+            {"heading": "List of parts", "of": None, "words": (), "names": (0, 2), "rows": rows,
+             "kind": "parts", "columns": ["type", "pieces", "luminaire", "lumens each", "watts each",
+                                          "luminous flux", "power", "luminous efficacy"]},
+            {"heading": "Reflectances", "of": None, "words": (), "names": (0,), "rows": surfaces,
              "columns": ["material", "reflectance"]}]
+
+    @staticmethod
+    def _row(tag: str, pieces: int, lines: list[str], lumens: float, watts: float,
+             each_of: int = 0) -> list[str | list[str]]:
+        """A row of the list of parts; `each_of` pieces share the sums, 0 = not stated for each."""
+        def amount(value: float, unit: str) -> str:
+            return f"{texts.grouped(value, 4)} {unit}" if value > 0 else ""
+
+        each = (lumens / each_of, watts / each_of) if each_of else (0, 0)
+        return [tag, str(pieces), lines, amount(each[0], "lm"), amount(each[1], "W"),
+                amount(lumens, "lm"), amount(watts, "W"),
+                f"{lumens / watts:.0f} lm/W" if watts > 0 else ""]
 
     def _sheets(self) -> list[dict[str, Any]]:
         sheets = []
+        own = ("power", "colour temperature", "colour rendering")  # the others are texts of the maker
+        tags = {part.name: part.tag for part in self._luminaires.types}
         for part in self._record.get("photometry", []):
             bright = any(value and value > 0 for plane in part["intensities"].values() for value in plane)
             drawing = self._rendered("curve.svg", curve=Curve(part["intensities"])) if bright else ""
-            sheets.append({"heading": part["name"], "drawing": markupsafe.Markup(drawing),
-                           "rows": [("luminous flux", f"{texts.grouped(part['flux'], 4)} lm"),
-                                    *part["data"]]})
+            rows = [("luminous flux", self._words.figure(f"{texts.grouped(part['flux'], 4)} lm"))]
+            rows += [(name, self._words.figure(self._words(value)) if name in own else value)
+                     for name, value in part["data"]]
+            sheets.append({"heading": f"{tags[part['name']]}: {part['name']}",
+                           "drawing": markupsafe.Markup(drawing), "rows": rows})
         return sheets
 
 

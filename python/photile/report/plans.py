@@ -7,117 +7,53 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Iterable
 from typing import Any
 
-import contourpy
 import numpy as np
 from numpy.typing import NDArray
 
-from .texts import number, rounded_up
+from .isolines import Contours, Writing, on_cells, place_numbers
+from .luminaires import Luminaires, outline_of
+from .scale import Scale, fitted, illuminance_steps
+from .texts import Words, number, rounded_up
 
 Floats = NDArray[np.float64]
-Place = tuple[float, float]
 
 # Pixels.
-margin, title_height, foot_height = 20, 48, 40
 pixels_per_millimetre = 4
+margin, title_height, legend_height = 20, 34, 40
+ruler_height, north_height = 26, 52
 # Beside and below a whole plan: two lines of dimensions.
 dimension_step = 16
-dimensions_room = 2 * dimension_step + 6
-# A whole plan has the largest of the draughtsmen's scales at which it fits on a page of A4 beside its
-# legend and below its figures, millimetres.
-widest, highest = 130, 160
-draughtsmen = (1, 2, 2.5, 3, 4, 5, 7.5)
-most_numbered_cells = 400
-# The part of a step that a band takes, around its middle.
-band_begin, band_end = 0.4, 0.6
+dimensions_room = 2 * dimension_step + 14
+# A whole plan has the largest drawing scale at which it fits below the figures of its grid on a page of A4,
+# upright or lying, millimetres.
+sheets = {"portrait": (180, 226), "landscape": (267, 143)}
+drawing_scales = (1, 2, 5, 10, 20, 25, 50, 100, 200, 500)  # of ISO 5455, and 1:25
+letter_width = 0.6  # the mean in common fonts without serifs, of their height
+most_written_isolines = 300
 
 
-def automatic_top(values: Floats) -> float:
-    """The largest of the values without the uppermost 2%; 0 where none is positive."""
-    known = np.sort(values[np.isfinite(values) & (values > 0)])
-    return float(known[len(known) - 1 - int(0.02 * len(known))]) if len(known) else 0.0
-
-
-def rounded_top(top: float, steps: int) -> float:
-    """The least number that is not below and whose steps have round middles: 10, 30, 50 ..."""
-    return rounded_up(top / steps, (1, 1.2, 1.6, 2, 3, 4, 6, 8)) * steps if top > 0 else top
-
-
-def illuminance_steps(low: float, high: float) -> list[float]:
-    """The steps of the scale of EN 12464-1 between two illuminances: 5, 7.5, 10, 15, 20, 30, 50 ..."""
-    if not (high > 0 and math.isfinite(high)):
-        return []
-    least = max(low, high / 1000)
-    steps, decade = [], 10.0 ** math.floor(math.log10(least))
-    while decade < high:
-        steps += [step * decade for step in (1, 1.5, 2, 3, 5, 7.5) if least < step * decade < high]
-        decade *= 10
-    return steps
-
-
-class Scale:
-    """Colours of values, by the options of false colour. `scale` 0: up to `automatic`."""
-
-    def __init__(self, colours: dict[str, Any], automatic: float) -> None:
-        self.top = colours["scale"] or automatic or 1.0
-        self.steps, self.decades = int(colours["steps"]), colours["decades"]
-        self.contours = colours["contours"]
-        self.label = colours["label"]
-        self._palette = colours["palette"].split()
-
-    def value_at(self, share: float) -> float:
-        return float(self.top * (10 ** ((share - 1) * self.decades) if self.decades else share))
-
-    def levels(self) -> list[float]:
-        """The levels of isolines: the middles of the legend's steps, as in falsecolor."""
-        return [self.value_at((step + 0.5) / self.steps) for step in range(self.steps)]
-
-    def bands(self) -> list[tuple[float, float]]:
-        return [(self.value_at((step + band_begin) / self.steps),
-                 self.value_at((step + band_end) / self.steps)) for step in range(self.steps)]
-
-    def colour(self, value: float) -> str:
-        share = value / self.top
-        if self.decades:
-            share = 1 + math.log10(share) / self.decades if value > 0 else 0
-        if self.contours == "steps":
-            share = (math.floor(min(max(share, 0), 1 - 1e-9) * self.steps) + 0.5) / self.steps
-        # Halves are rounded up, as std::lround does.
-        return str(self._palette[math.floor(min(max(share, 0), 1) * (len(self._palette) - 1) + 0.5)])
-
-
-def refined(values: Floats) -> tuple[Floats, int]:
-    """Values between the middles of cells by bicubic interpolation (Catmull and Rom, 1974), so that
-    isolines are smooth; NaN beside a cell without a value. Also the steps from one middle to the next.
-
-    It keeps given values and follows slopes exactly: beyond the border and beside cells without a value
-    they continue linearly.
-    """
-    per_cell = min(max(2000 // max(values.shape), 1), 8)
-    for _ in range(2):  # along the rows, then along the columns
-        b, c = values[:, :-1], values[:, 1:]
-        edge = np.full((len(values), 1), np.nan)
-        a = np.hstack([edge, values[:, :-2]]) if values.shape[1] > 1 else b
-        d = np.hstack([values[:, 2:], edge]) if values.shape[1] > 1 else c
-        a, d = np.where(np.isnan(a), 2 * b - c, a), np.where(np.isnan(d), 2 * c - b, d)
-        fine = np.empty((len(values), (values.shape[1] - 1) * per_cell + 1))
-        fine[:, ::per_cell] = values
-        for step in range(1, per_cell):
-            t = step / per_cell
-            fine[:, step::per_cell] = b + 0.5 * t * (
-                c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)))
-        values = fine.T
-    return values, per_cell
+def drawing_scale(least: float) -> float:
+    """The denominator of the largest usual scale that is not larger than 1 to `least`."""
+    return next((each for each in drawing_scales if each >= least), rounded_up(least, (1, 2, 5)))
 
 
 @dataclasses.dataclass
 class Label:
+    """A text around a position; turned counts clockwise from the horizontal, degrees."""
+
     x: float
     y: float
     size: int
     weight: str
     text: str
+    turned: float = 0.0
+
+    @property
+    def width(self) -> float:
+        return letter_width * self.size * len(self.text)
 
 
 @dataclasses.dataclass
@@ -129,6 +65,19 @@ class Dimension:
     upright: tuple[float, float, str]
 
 
+@dataclasses.dataclass
+class Legend:
+    """Bars of colours (x, width, colour) and the values below them (x, text)."""
+
+    label: str
+    at_label: float
+    x: float
+    y: float
+    height: int
+    bars: list[tuple[float, float, str]]
+    values: list[tuple[float, str]]
+
+
 def _path(points: Floats, close: bool = False) -> str:
     return "M" + "L".join(f"{x:.2f} {y:.2f}" for x, y in points) + ("Z" if close else "")
 
@@ -136,58 +85,83 @@ def _path(points: Floats, close: bool = False) -> str:
 class Plan:
     """A plane seen against the direction that it faces, `u` to the right.
 
-    A small plan is one of several: without the values of isolines and cells, and not to scale.
+    A small plan is one of several: without texts on it, and not to scale. One without any values shows
+    the room and its luminaires alone.
+
+    luminaires   whose tags it has
+    pages        of the sheets, to choose from
     """
 
-    def __init__(self, grid: dict[str, Any], values: list[float | None], title: str,
-                 colours: dict[str, Any], small: bool = False) -> None:
+    def __init__(self, grid: dict[str, Any], values: list[float | None], title: str, colours: dict[str, Any],
+                 words: Words | None = None, luminaires: Luminaires | None = None, small: bool = False,
+                 pages: Iterable[str] = tuple(sheets)) -> None:
         plane = grid["plane"]
         plan = grid.get("plan") or {}
+        self._words, self._luminaires = words or Words(), luminaires or Luminaires({})
         self.small, self._reach = small, float(plan.get("reach", 0))
-        self._columns, self._rows = int(plane["columns"]), int(plane["rows"])
+        self._on_cells = on_cells(plane, values)
+        self._rows, self._columns = self._on_cells.shape
+        self._values = self._on_cells.ravel()
+        self._bare = bool(np.isnan(self._values).all())
         self._size = np.array([np.linalg.norm(plane["u"]), np.linalg.norm(plane["v"])])
-        self._values = np.full(self._columns * self._rows, np.nan)
-        self._values[plane["cells"]] = np.array(values, float)
-        known = self._values[~np.isnan(self._values)]
-        self._scale = Scale(colours, rounded_top(automatic_top(known), int(colours["steps"])))
-        wide, high = self._size + 2 * self._reach
-        scale = rounded_up(max(1.0, 1000 * max(wide / widest, high / highest)), draughtsmen)
-        self._per_metre = 190 / max(wide, high) if small else 1000 * pixels_per_millimetre / scale
-        self._left = margin + (0 if small else dimensions_room)
-        self._inner = self._per_metre * np.array([wide, high])
-        self.title = title if small else f"{title}, 1:{scale:g}"
-        # No letter of common fonts without serifs is wider on the mean than 0.6 of its height.
-        legend, title_width = (75 if small else 110), 0.6 * 14 * len(self.title)
-        foot = 0 if small else dimensions_room
-        self._legend_height = max(self._inner[1], 130 if small else 200)
-        self.width = round(self._left + max(self._inner[0] + margin + legend, title_width + margin))
-        self.height = round(title_height + self._legend_height + foot_height + foot)
+        self._scale = Scale(fitted(colours, [self._values]))
+        self._north = None if small else self._direction_of_north(plan)
+        self._left, around = (margin, 0) if small else (dimensions_room, dimensions_room)
+        metres = self._size + 2 * self._reach
+        self.page, self.scale, self._per_metre = "portrait", "", 200 / max(metres)
+        if not small:
+            scales = {page: drawing_scale(1000 * max(metres / self._room(page))) for page in pages}
+            self.page = min(scales, key=lambda page: scales[page])
+            self._per_metre = 1000 * pixels_per_millimetre / scales[self.page]
+            self.scale = f"1:{scales[self.page]:.0f}"
+        self._inner = self._per_metre * metres
+        self.title = ", ".join(filter(None, (title, self.scale)))
+        self._foot = title_height + self._inner[1] + around
+        self.width = round(max(self._left + self._inner[0] + margin,
+                               letter_width * 14 * len(self.title) + 2 * margin, 240 if small else 400))
+        self.height = round(self._foot + sum(self._foot_rows(self.page)))
         self.unit, self.per_unit = ("", 1) if small else ("mm", pixels_per_millimetre)
-        self._numbers: list[Place] = []
+        self._writing = Writing()
+        self.labels: list[Label] = []
         self._draw(grid, plane, plan)
 
     def _draw(self, grid: dict[str, Any], plane: dict[str, Any], plan: dict[str, Any]) -> None:
         scale, cells = self._scale, np.flatnonzero(~np.isnan(self._values))
-        middles = self._middles(cells)
         self.cell = self._per_metre * self._size / (self._columns, self._rows)
         self.cells = [] if scale.contours in ("isolines", "bands") else [
             (x - self.cell[0] / 2, y - self.cell[1] / 2, scale.colour(self._values[cell]))
-            for cell, (x, y) in zip(cells, middles)]
-        self.labels: list[Label] = []
-        if not self.small and len(self._values) <= most_numbered_cells:
-            self._numbers = [(x, y) for x, y in middles]
-            self.labels = [Label(x, y, 9, "normal", number(self._values[cell], 3))
-                           for cell, (x, y) in zip(cells, middles)]
+            for cell, (x, y) in zip(cells, self._middles(cells))]
+        (x, y), (right, top) = self._at([[0, 0], self._size])
+        self.frame = None if self._bare else (x, top, right - x, y - top)
+        self.corners = [] if self.small or self._bare else self._coordinates(plane)
+        self._cross(grid, plane)
+        if not self.small:
+            self._write_values(cells)
+        self._surround(plan)
         self.bands = self._bands() if scale.contours == "bands" else []
         self.isolines = self._isolines() if scale.contours in ("cells", "isolines") else []
-        self._surround(plan)
-        self._cross(grid, plane)
-        (x, y), (right, top) = self._at([[0, 0], self._size])
-        self.frame = (x, top, right - x, y - top)
-        self.corners = [] if self.small else self._coordinates(plane)
         self.dimensions = [] if self.small else self._dimensions(plan)
         self.ruler = self._ruler()
-        self.legend = self._legend()
+        self.legend = None if self._bare else self._legend()
+        self.north = None if self._north is None else {
+            "turned": self._north, "x": self._left + max(self._inner[0], 320) - 16, "y": self._foot + 25}
+
+    @staticmethod
+    def _direction_of_north(plan: dict[str, Any]) -> float | None:
+        """Degrees clockwise from upwards; None where the record does not have it."""
+        east, up = plan.get("north") or (0.0, 0.0)
+        return math.degrees(math.atan2(east, up)) if math.hypot(east, up) > 0 else None
+
+    def _foot_rows(self, page: str) -> tuple[float, float]:
+        """The heights of ruler and legend: on a lying page they are beside each other."""
+        row, legend = ruler_height if self._north is None else north_height, 0 if self._bare else legend_height
+        return (0, max(row, legend)) if page == "landscape" else (row, legend)
+
+    def _room(self, page: str) -> Floats:
+        """Millimetres for the drawing itself on a page."""
+        beside = (dimensions_room + margin, title_height + dimensions_room + sum(self._foot_rows(page)))
+        room: Floats = np.array(sheets[page]) - np.array(beside) / pixels_per_millimetre
+        return room
 
     def _at(self, metres: Any) -> Floats:
         """Pixels of positions in metres along u and v from the plane's corner."""
@@ -200,65 +174,69 @@ class Plan:
         places = np.column_stack([cells % self._columns, cells // self._columns]) + 0.5
         return self._at(places / (self._columns, self._rows) * self._size)
 
-    def _lines_of(self, values: Floats, per_cell: int) -> Any:
-        """Contours of values that lie on the middles of cells, in pixels."""
-        rows, columns = values.shape
-        x = (np.arange(columns) / per_cell + 0.5) / self._columns * self._size[0]
-        y = (np.arange(rows) / per_cell + 0.5) / self._rows * self._size[1]
-        places = self._at(np.column_stack([np.tile(x, rows), np.repeat(y, columns)]))
-        return contourpy.contour_generator(
-            places[:, 0].reshape(rows, columns), places[:, 1].reshape(rows, columns),
-            values, name="serial", corner_mask=False, quad_as_tri=per_cell == 1,
-            line_type=contourpy.LineType.Separate, fill_type=contourpy.FillType.OuterOffset)
+    def _write(self, label: Label) -> None:
+        self.labels.append(label)
+        self._writing.add((label.x, label.y), math.radians(label.turned), label.width, label.size)
+
+    def _write_values(self, cells: NDArray[np.intp]) -> None:
+        """The numbers of cells: of each, or of every second, third ... where they need the room."""
+        size, apart = 9, 9
+        texts = [self._words.figure(number(self._values[cell], 3)) for cell in cells]
+        room = np.array([letter_width * size * max(map(len, texts), default=0) + apart, size + apart])
+        every = np.maximum(np.ceil(room / self.cell), 1).astype(int)
+        for cell, text, (x, y) in zip(cells, texts, self._middles(cells)):
+            column, row = cell % self._columns, cell // self._columns
+            if column % every[0] == every[0] // 2 and row % every[1] == every[1] // 2:
+                self._write(Label(x, y, size, "normal", text))
+
+    def _contours(self, smooth: bool) -> Contours | None:
+        if min(self._columns, self._rows) < 2 or self._bare:
+            return None
+        return Contours(self._on_cells, self._size, smooth)
 
     def _bands(self) -> list[tuple[str, str]]:
         """Colours and paths, with the levels numbered like isolines."""
-        if min(self._columns, self._rows) < 2:
-            return []
-        found = []
-        generator = self._lines_of(self._values.reshape(self._rows, self._columns), 1)
+        found: list[tuple[str, str]] = []
+        contours = self._contours(False)
+        if contours is None:
+            return found
         for (low, high), level in zip(self._scale.bands(), self._scale.levels()):
-            points, offsets = generator.filled(low, high)
-            if not points:
-                continue
-            found.append((self._scale.colour(level), "".join(
-                _path(one[begin:end], True) for one, starts in zip(points, offsets)
-                for begin, end in zip(starts, starts[1:]))))
-            self._number(np.vstack(points), level)
+            outlines = [self._at(loop) for area in contours.areas(low, high) for loop in area]
+            if outlines:
+                found.append((self._scale.colour(level), "".join(_path(loop, True) for loop in outlines)))
+                self._number(outlines, level)
         return found
 
     def _isolines(self) -> list[tuple[str, str]]:
         """Colours and paths, at the steps of the standard or as in falsecolor."""
-        known = self._values[~np.isnan(self._values)]
-        if min(self._columns, self._rows) < 2 or not len(known):
-            return []
-        alone = self._scale.contours == "isolines"
-        generator = self._lines_of(*refined(self._values.reshape(self._rows, self._columns)))
-        found = []
-        for level in self._scale.levels() if alone else illuminance_steps(min(known), max(known)):
-            lines = generator.lines(level)
+        found: list[tuple[str, str]] = []
+        contours = self._contours(True)
+        if contours is None:
+            return found
+        for level in self._levels():
+            lines = [self._at(line) for line in contours.lines(level)]
             if lines:
-                found.append((self._scale.colour(level) if alone else "#000000",
-                              "".join(map(_path, lines))))
-                self._number(np.vstack([0.5 * (line[1:] + line[:-1]) for line in lines]), level)
+                colour = self._scale.colour(level) if self._scale.contours == "isolines" else "#000000"
+                found.append((colour, "".join(map(_path, lines))))
+                self._number(lines, level)
         return found
 
-    def _number(self, places: Floats, level: float) -> None:
-        """Writes a level at the position that is farthest from other numbers, or far enough and nearest
-        to the middle one; not at all where there is no room, since the legend has it."""
+    def _levels(self) -> list[float]:
+        """Those of isolines."""
+        known = self._values[~np.isnan(self._values)]
+        alone = self._scale.contours == "isolines"
+        return self._scale.levels() if alone or not len(known) else illuminance_steps(min(known), max(known))
+
+    def _number(self, lines: list[Floats], level: float) -> None:
+        """Writes a level along its lines, where there is room."""
         if self.small:
             return
-        far_enough, too_near = 30.0, 12.0
-        room = np.full(len(places), far_enough)
-        for x, y in self._numbers:
-            room = np.minimum(room, np.hypot(places[:, 0] - x, places[:, 1] - y))
-        away = np.abs(np.arange(len(places)) - len(places) // 2)
-        best = int(np.lexsort((away, -room))[0])
-        if room[best] < too_near:
-            return
-        x, y = places[best]
-        self._numbers.append((x, y))
-        self.labels.append(Label(x, y, 11, "bold", number(level, 3)))
+        text, size = self._words.figure(number(level, 3)), 11
+        for line in sorted(lines, key=len, reverse=True):
+            if len(self.labels) > most_written_isolines + len(self._values):
+                return
+            for x, y, angle in place_numbers(line, letter_width * size * len(text), size, self._writing, 600):
+                self.labels.append(Label(x, y, size, "bold", text, math.degrees(angle)))
 
     def _surround(self, plan: dict[str, Any]) -> None:
         """Walls and furniture are paths in metres, which the template moves to their place."""
@@ -266,8 +244,34 @@ class Plan:
         self.transform = f"matrix({self._per_metre:.6g} 0 0 {-self._per_metre:.6g} {x:.2f} {y:.2f})"
         self.pixel = 1 / self._per_metre
         self.furniture, self.walls = plan.get("furniture", ""), plan.get("walls", "")
-        self.lamps = [] if self.small else [
-            (*self._at(lamp["position"])[0], int(lamp["number"])) for lamp in plan.get("lamps", [])]
+        self.lamps: list[str] = []
+        for lamp in [] if self.small else plan.get("lamps", []):
+            self._add_lamp(lamp)
+
+    def _add_lamp(self, lamp: dict[str, Any]) -> None:
+        """The outline of a luminaire, or a circle where it has no size, and its tag at the first place
+        that is free: on it, in its corners, beside it."""
+        (x, y), = self._at(lamp["position"])
+        kind = self._luminaires.of_number.get(int(lamp["number"]))
+        corners = np.array(lamp.get("outline") or [], float)
+        if len(corners) >= 3:
+            outline = self._at(outline_of(corners, kind is not None and kind.round))
+        else:
+            turns = np.linspace(0, 2 * math.pi, 24, endpoint=False)
+            outline = np.column_stack([x + 4 * np.cos(turns), y + 4 * np.sin(turns)])
+        outline = np.clip(outline, (self._left, title_height), self._inner + (self._left, title_height))
+        self.lamps.append(_path(outline, True))
+        label = Label(x, y, 10, "bold", self._luminaires.tag(int(lamp["number"])))
+        half = 0.5 * np.ptp(outline, axis=0)
+        inside = np.maximum(half - (0.5 * label.width + 3, 0.5 * label.size + 3), 0)
+        beside = half + (0.5 * label.width + 3, 0.5 * label.size + 3)
+        steps = [(0, 0), *(inside * corner for corner in ((0, -1), (0, 1), (-1, -1), (1, -1), (-1, 1), (1, 1))),
+                 *(beside * side for side in ((1, 0), (-1, 0), (0, -1), (0, 1)))]
+        places = 0.5 * (outline.min(axis=0) + outline.max(axis=0)) + np.array(steps, float)
+        room = self._writing.clearance(places, np.zeros(len(places)), label.width, label.size)
+        best = int(np.argmax(room > 1)) if (room > 1).any() else int(np.argmax(room))
+        label.x, label.y = float(places[best, 0]), float(places[best, 1])
+        self._write(label)
 
     def _cross(self, grid: dict[str, Any], plane: dict[str, Any]) -> None:
         """Crosses at points that are not measured, or doubtful."""
@@ -286,14 +290,19 @@ class Plan:
         """The coordinates of two corners, in the scene's world."""
         low, high = self._at([[0, 0], self._size])
         origin = np.array(plane["origin"], float)
-        return [(x, y, anchor, "({:.2f}, {:.2f}, {:.2f}) m".format(*world)) for x, y, anchor, world in (
-            (low[0], low[1] + (11 if self._reach else -4), "start", origin),
-            (high[0], high[1] - 4, "end", origin + plane["u"] + plane["v"]))]
+        found = [(x, y, anchor, self._words.figure("({:.2f}, {:.2f}, {:.2f}) m".format(*world)))
+                 for x, y, anchor, world in (
+                     (low[0], low[1] + (11 if self._reach else -4), "start", origin),
+                     (high[0], high[1] - 4, "end", origin + plane["u"] + plane["v"]))]
+        for x, y, anchor, text in found:
+            half = 0.5 * letter_width * 8 * len(text)
+            self._writing.add((x + (half if anchor == "start" else -half), y - 3), 0.0, 2 * half, 8)
+        return found
 
     def _dimensions(self, plan: dict[str, Any]) -> list[Dimension]:
         found = []
         bottom, right, tick = title_height + self._inner[1], self._left + self._inner[0], 3
-        for row, corners in enumerate([[[0, 0], list(self._size)], plan.get("room")], 1):
+        for row, corners in enumerate([None if self._bare else [[0, 0], list(self._size)], plan.get("room")], 1):
             if not corners:
                 continue
             (ax, ay), (bx, by) = self._at(corners)
@@ -304,25 +313,42 @@ class Plan:
                 f"M{ax:.2f} {y:.2f}H{bx:.2f}M{ax:.2f} {y - tick:.2f}v{2 * tick}"
                 f"M{bx:.2f} {y - tick:.2f}v{2 * tick}M{x:.2f} {ay:.2f}V{by:.2f}"
                 f"M{x - tick:.2f} {ay:.2f}h{2 * tick}M{x - tick:.2f} {by:.2f}h{2 * tick}",
-                ((ax + bx) / 2, y - 2, f"{(bx - ax) / self._per_metre:.2f}"),
-                (x - 2, (ay + by) / 2, f"{(ay - by) / self._per_metre:.2f}")))
+                ((ax + bx) / 2, y - 2, self._words.figure(f"{(bx - ax) / self._per_metre:.2f}")),
+                (x - 2, (ay + by) / 2, self._words.figure(f"{(ay - by) / self._per_metre:.2f}"))))
         return found
 
-    def _ruler(self) -> tuple[float, float, float, str]:
-        """A ruler of 1, 2 or 5 times a power of ten metres, at most a quarter of the plan's width."""
-        most = self._inner[0] / self._per_metre / 4
+    def _ruler(self) -> dict[str, Any]:
+        """A scale bar of 1, 2 or 5 times a power of ten metres, at most a quarter of the plan's width, in
+        two or five parts."""
+        most = min(max(self._inner[0], 200) / 4, 180) / self._per_metre
         power = 10.0 ** math.floor(math.log10(most))
-        metres = next(step * power for step in (5, 2, 1) if step * power <= most or step == 1)
-        y = title_height + self._legend_height + 14 + (0 if self.small else dimensions_room)
-        return self._left, self._left + metres * self._per_metre, y, f"{metres:g} m"
+        step = next(step for step in (5, 2, 1) if step * power <= most or step == 1)
+        parts = 2 if step == 2 else 5
+        x, length = self._left, step * power * self._per_metre
+        return {"y": self._foot + 6, "x": x, "end": x + length,
+                "parts": [(x + i * length / parts, length / parts) for i in range(0, parts, 2)],
+                "metres": self._words.figure(f"{step * power:g} m"), "scale": self.scale}
 
-    def _legend(self) -> dict[str, Any]:
-        bar, step = (14 if self.small else 22), self._legend_height / self._scale.steps
-        x, bottom = self._left + self._inner[0] + margin, title_height + self._legend_height
-        values = [self._scale.value_at((i + 0.5) / self._scale.steps) for i in range(self._scale.steps)]
-        return {"label": self._scale.label, "x": x, "y": title_height - 7, "width": bar, "height": step,
-                "bars": [(bottom - (i + 1) * step, self._scale.colour(value), number(value, 4))
-                         for i, value in enumerate(values)]}
+    def _legend(self) -> Legend:
+        """A bar with values where colours change, or below the colours of isolines and bands."""
+        scale, size = self._scale, (9 if self.small else 11)
+        label = self._words(scale.label)
+        right = max(self._left + self._inner[0], self.width - 2 * margin)
+        beside = self.page == "landscape"
+        at_label = self.ruler["end"] + 150 if beside else self._left
+        x = at_label + letter_width * 12 * len(label) + 8
+        width = min(right - (40 if beside and self._north is not None else 0) - x, 560)
+        stepped = scale.contours != "cells"
+        count = scale.steps if stepped else scale.steps * max(64 // scale.steps, 1)
+        bars = [(x + i * width / count, width / count, scale.colour(scale.value_at((i + 0.5) / count)))
+                for i in range(count)]
+        values = [(x + share * width, self._words.figure(number(value, 4))) for share, value in scale.marks()]
+        room = letter_width * size * max(len(text) for _, text in values) + 8
+        every = max(math.ceil(room * len(values) / width), 1)
+        # The highest has its number, and so has each that is as far from the next.
+        shown = values[::-1][::every][::-1]
+        y = self._foot + self._foot_rows(self.page)[0] + 4
+        return Legend(label, at_label, x, y, 10 if self.small else 14, bars, shown)
 
 
 class Curve:

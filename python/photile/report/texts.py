@@ -5,11 +5,17 @@ from __future__ import annotations
 import json
 import math
 import pathlib
-from collections.abc import Sequence
+import re
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 _words = pathlib.Path(__file__).resolve().parent / "words"
 least_glare = 10.0  # ratings below it have no meaning (CIE 117)
+_figure = "1,234.5"  # whose translation has the separators of a language
+_of_figures = re.compile(r"(?<=\d)[.,](?=\d)|, (?=[-\d])")
+_only_figures = re.compile(r"[-\d.,]+%?")
+_blank = re.compile(r"\{[^}]*\}")
+most_letters = 2000  # of a text that patterns are tried on
 
 
 def number(value: float | None, digits: int) -> str:
@@ -27,17 +33,6 @@ def grouped(value: float, digits: int) -> str:
     return f"{int(text):,}" if text.lstrip("-").isdigit() and abs(int(text)) >= 10000 else text
 
 
-def count(value: float) -> str:
-    """"512", "50.0k", "1.2M"."""
-    for suffix in ("", "k", "M", "G"):
-        if abs(value) < 999.5:
-            break
-        value /= 1000
-    else:
-        suffix = "T"
-    return f"{value:.1f}{suffix}" if suffix else f"{value:.3g}"
-
-
 def place(position: Sequence[float] | None) -> str:
     return ", ".join(f"{one:.2f}" for one in position or ())
 
@@ -52,13 +47,26 @@ def rounded_up(value: float, steps: Sequence[float]) -> float:
     return next((step * decade for step in steps if step * decade >= value), 10 * decade)
 
 
+class _Localised:
+    """A number that is formatted with the signs of a language."""
+
+    def __init__(self, value: Any, words: Words) -> None:
+        self._value, self._words = value, words
+
+    def __format__(self, how: str) -> str:
+        return self._words.figure(format(self._value, how))
+
+
 class Words:
     """English texts in another language; a text that its file lacks stays English.
+
+    Texts of the file may have blanks, ``{}``: what the record says with numbers and names in it is
+    translated by them.
 
     Raises KeyError with the available languages.
     """
 
-    def __init__(self, language: str, folders: Sequence[pathlib.Path]) -> None:
+    def __init__(self, language: str = "en", folders: Iterable[pathlib.Path] = ()) -> None:
         self.language = language
         self._words: dict[str, str] = {}
         files = {file.stem: file for folder in (_words, *(each / "words" for each in folders))
@@ -67,7 +75,30 @@ class Words:
             if language not in files:
                 raise KeyError(", ".join(["en", *files]))
             self._words = json.loads(files[language].read_text(encoding="utf-8"))
+        self._patterns = [(re.compile("(.+?)".join(map(re.escape, _blank.split(english)))), other)
+                          for english, other in self._words.items()
+                          if "{" in english and len(_blank.sub("", english).strip()) > 3]
+        figure = self._words.get(_figure, _figure)
+        self._signs = {",": figure[1], ".": figure[5], ", ": "; " if figure[5] == "," else ", "}
 
     def __call__(self, english: str, *values: Any) -> str:
-        text = self._words.get(english, english)
-        return text.format(*values) if values else text
+        text = self._words.get(english)
+        if values:
+            return (text or english).format(*(value if isinstance(value, str) else _Localised(value, self)
+                                              for value in values))
+        return self._filled(english) if text is None else text
+
+    def _filled(self, english: str) -> str:
+        """A text by the first pattern that fits; the text itself without one."""
+        for pattern, other in self._patterns if len(english) < most_letters else ():
+            if found := pattern.fullmatch(english):
+                return _blank.sub("{}", other).format(*map(self._part, found.groups()))
+        return english
+
+    def _part(self, text: str) -> str:
+        return self.figure(text) if _only_figures.fullmatch(text) else self(text)
+
+    def figure(self, text: str) -> str:
+        """A text of numbers with the signs of the language: "1.50, 12,000 lm" is "1,50; 12.000 lm" in
+        German."""
+        return _of_figures.sub(lambda found: self._signs[found[0]], text)
