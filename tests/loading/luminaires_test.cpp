@@ -115,6 +115,21 @@ TEST_CASE("an array is spaced around its middle and shares a layer") {
   CHECK(glm::distance(middle + scene.origin, glm::dvec3(1, 0, 3)) < 0.1);
 }
 
+TEST_CASE("entries of one circuit share a layer, and a colour temperature tints their light") {
+  const SceneFolderOnDisk folder;
+  const Scene scene = scene_with(
+      folder, R"([{"file": "lamp.ies", "position": [0, 0, 2], "size": [1, 1], "circuit": "C1"},
+                  {"file": "lamp.ies", "position": [2, 0, 2], "size": [1, 1], "circuit": "C1",
+                   "name": "warm", "kelvin": 2700}])");
+  const LightGroups layers = light_groups_of(scene);
+  REQUIRE(layers.groups.size() == 1);
+  CHECK(layers.groups[0].name == "C1");
+  CHECK(scene.lights[0].color == glm::vec3(1.0f));
+  const glm::vec3 warm = scene.lights[1].color;
+  CHECK(luminance(glm::dvec3(warm)) == Approx(1));
+  CHECK((warm.r > warm.g && warm.g > warm.b));
+}
+
 TEST_CASE("however many entries name a file, its intensities are there once") {
   const SceneFolderOnDisk folder;
   std::string list = one;

@@ -22,6 +22,7 @@
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"
+#include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
 #include "scene/mesh_builder.hpp"
 #include "trace/place_camera.hpp"
@@ -168,6 +169,11 @@ LuminaireArray array_of(const json& entry, const JsonObject& object, files::Scen
   placed.axes = luminaire_axes(glm::normalize(aim), placed.rotation);
   placed.lumens = distribution.flux();
   if (object.has("lumens")) placed.lumens = object.number("lumens", 0, limits::max_light_power);
+  if (object.has("kelvin")) {
+    placed.kelvin =
+        object.number("kelvin", limits::min_color_temperature, limits::max_color_temperature);
+  }
+  if (object.has("circuit")) placed.circuit = object.text("circuit", "");
   if (const auto count = pair_of(entry, object, "count", 1, most_in_a_row)) {
     placed.columns = static_cast<int>((*count)[0]);
     placed.rows = static_cast<int>((*count)[1]);
@@ -206,13 +212,15 @@ void add_array(const LuminaireArray& lamps, double lumen_per_watt, std::uint32_t
   Light light;
   light.kind = LightKind::area;
   light.power = in_unit(placed.lumens, PowerUnit::lumen, scene.unit, lumen_per_watt);
+  if (placed.kelvin > 0) light.color = glm::vec3(scene::color_of_temperature(placed.kelvin));
   light.direction = glm::vec3(-placed.axes[2]);
   light.x_axis = glm::vec3(placed.axes[0]);
   light.two_sided = lamps.kind.uplight;
   light.distribution = lamps.kind.distribution;
   const std::vector<glm::dvec3> middles = placed.middles();
   const bool alone = middles.size() == 1;
-  if (!alone) light.group = placed.name;
+  light.group = placed.circuit;
+  if (!alone && light.group.empty()) light.group = placed.name;
   const auto columns = static_cast<std::size_t>(placed.columns);
   for (std::size_t i = 0; i < middles.size(); ++i) {
     glm::dmat4 world(placed.axes);
@@ -283,9 +291,9 @@ std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
   std::size_t lamps = scene.lights.size();
   for (std::size_t i = 0; i < list.entries.size(); ++i) {
     const json entry = list.entries[i];
-    const JsonObject object(
-        entry, fmt::format("{}: luminaire {}", file.string(), i + 1),
-        {"name", "file", "position", "aim", "rotation", "lumens", "count", "spacing", "size"});
+    const JsonObject object(entry, fmt::format("{}: luminaire {}", file.string(), i + 1),
+                            {"name", "file", "position", "aim", "rotation", "lumens", "kelvin",
+                             "circuit", "count", "spacing", "size"});
     arrays.push_back(array_of(entry, object, folder, shared, scene, warnings));
     const PlacedLuminaires& placed = arrays.back().placed;
     lamps += static_cast<std::size_t>(placed.columns) * static_cast<std::size_t>(placed.rows);
