@@ -36,7 +36,7 @@ denoiser() {
 }
 
 test-packages() {
-  venv "$1" 'numpy>=2,<3' pytest OpenImageIO honeybee-radiance
+  venv "$1" 'numpy>=2,<3' pytest OpenImageIO honeybee-radiance ifcopenshell
 }
 
 intel-runtime() {
@@ -48,7 +48,7 @@ failed=0
 for part in "$@"; do
   case $part in
     denoiser) folder=$build/denoiser for_what='Open Image Denoise 2, for --denoise' ;;
-    test-packages) folder=$build/test-venv for_what='numpy 2, OpenImageIO and honeybee-radiance, for tests' ;;
+    test-packages) folder=$build/test-venv for_what='numpy 2, OpenImageIO, honeybee-radiance and ifcopenshell, for tests' ;;
     intel-runtime) folder=$build/intel-runtime for_what="Intel's OpenCL runtime, for tests" ;;
     *)
       echo "cmake/fetch.sh: error: there is no '$part'; denoiser, test-packages and intel-runtime are there" >&2

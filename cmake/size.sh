@@ -33,7 +33,7 @@ row 'headers of host/ under 30 lines' \
 row 'public headers' "$(tracked include | grep '\.hpp$' | wc -l)" at-most 25
 row 'files that name processes outside host/cluster/' \
   "$(host | grep -v '^host/cluster/' | xargs grep -lwE 'Communicator|MPI' | wc -l)" at-most 7 6
-row 'lines of tests/' "$(tracked tests | grep -E '\.(cpp|hpp|py|sh)$' | lines)" at-most 56500 45000
+row 'lines of tests/' "$(tracked tests | grep -E '\.(cpp|hpp|py|sh)$' | lines)" at-most 56700 45000
 row 'lines of bench/' "$(tracked bench | grep -E '\.(cpp|hpp|py|sh)$' | lines)" at-most 17000
 row 'files below tests/' "$(tracked tests | wc -l)" at-most 1000
 row 'conditional directives of kernels/' \

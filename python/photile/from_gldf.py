@@ -18,6 +18,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from .converters import exit_code, unique, write_files
+from .errors import InputError, UsageError
+
 __all__ = ["convert"]
 
 _endings = {"ldc/eulumdat": ".ldt", "ldc/ies": ".ies"}
@@ -84,7 +87,7 @@ def _luminaires(gldf: Path) -> tuple[list[dict[str, Any]], dict[str, bytes]]:
         product = xml.fromstring(_read(archive, "product.xml", _most_product))
         files = _photometric_files(product)
         there = {name for name in archive.namelist() if not name.endswith("/")}
-        names: set[str] = set()
+        names: dict[str, int] = {}
         room = _most_files
         for number, (light, photometry, flux) in enumerate(_lights(product), 1):
             if number > _most_lights:
@@ -97,10 +100,7 @@ def _luminaires(gldf: Path) -> tuple[list[dict[str, Any]], dict[str, bytes]]:
             room -= len(contents[member])
             if room < 0:
                 raise ValueError(f"the files of its lights have more than {_most_files} bytes")
-            name = re.sub(r"\W+", "_", light)
-            while name in names:  # of other ids that become the same word
-                name += f"_{number}"
-            names.add(name)
+            name = unique(re.sub(r"\W+", "_", light), names)  # other ids may become the same word
             written[name + ending] = contents[member]
             entries.append({"name": name, "file": name + ending, "position": "ceiling"})
             if flux:
@@ -114,23 +114,21 @@ def convert(gldf: Path, folder: Path) -> list[dict[str, Any]]:
     """Writes the photometric files of all variants and ``luminaires.json``, with an entry for each
     of their lights, into a new or empty folder; returns the entries.
 
-    Errors: ValueError where the file is not GLDF, or none of its variants has a photometric file
-    in it. OSError.
+    Errors: InputError where the file is not GLDF, or none of its variants has a photometric file
+    in it; UsageError where the folder is not empty; OutputError.
     """
     try:
         entries, written = _luminaires(gldf)
-    except OSError:
-        raise
+    except OSError as error:
+        raise InputError(f"{gldf}: {error.strerror}; name a GLDF file") from None
     except Exception as error:  # zipfile and its decompressors raise what they like on damaged files
-        raise ValueError(f"{gldf}: this is not a GLDF file: {error}; get the file again") from None
+        raise InputError(f"{gldf}: this is not a GLDF file: {error}; get the file again") from None
     if not entries:
-        raise ValueError(f"{gldf}: no variant has a photometric file (EULUMDAT or IES) in it")
-    folder.mkdir(parents=True, exist_ok=True)
-    if any(folder.iterdir()):
-        raise ValueError(f"{folder}: the folder is not empty; name a new one")
-    for file_name, content in written.items():
-        (folder / file_name).write_bytes(content)
-    (folder / "luminaires.json").write_text(json.dumps(entries, indent=2) + "\n", encoding="utf-8")
+        raise InputError(f"{gldf}: no variant has a photometric file (EULUMDAT or IES) in it")
+    if folder.is_dir() and any(folder.iterdir()):
+        raise UsageError(f"{folder}: the folder is not empty; name a new one")
+    written["luminaires.json"] = (json.dumps(entries, indent=2) + "\n").encode()
+    write_files({folder / name: content for name, content in written.items()})
     return entries
 
 
@@ -140,16 +138,14 @@ def main() -> int:
     parser.add_argument("gldf", type=Path)
     parser.add_argument("folder", type=Path, help="new folder to write to")
     options = parser.parse_args()
-    try:
-        entries = convert(options.gldf, options.folder)
-    except (ValueError, OSError) as error:
-        print(f"photile.from_gldf: error: {error}", file=sys.stderr)
-        return 1
-    for entry in entries:
-        print(f"{entry['name']}: {entry['file']}"
-              + (f", {entry['lumens']:g} lm" if "lumens" in entry else ""))
-    print(f"--luminaires {options.folder}/luminaires.json")
-    return 0
+
+    def work() -> None:
+        for entry in convert(options.gldf, options.folder):
+            print(f"{entry['name']}: {entry['file']}"
+                  + (f", {entry['lumens']:g} lm" if "lumens" in entry else ""))
+        print(f"--luminaires {options.folder}/luminaires.json")
+
+    return exit_code("photile.from_gldf", work)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@ that files have to be read with ``--set up=z``; the line that is printed says so
 from __future__ import annotations
 
 import argparse
-import base64
 import contextlib
 import importlib
 import io
@@ -21,7 +20,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from .converters import Gltf, luminaire_rotation, matt, write_files
+from .errors import OutputError
 
 __all__ = ["convert"]
 
@@ -52,11 +53,8 @@ def _tint(transmissivity: float, index: float) -> float:
 def _material(modifier: Any) -> tuple[dict[str, Any], str]:
     """A glTF material for a Radiance modifier, and what of the modifier is lost or ""."""
     kind, lost = type(modifier).__name__, ""
-    surface: dict[str, Any] = {"metallicFactor": 0.0}
-    # Without this glTF adds a coat of 4% to every surface; Radiance's matt ones have none.
-    extensions: dict[str, Any] = {"KHR_materials_specular": {"specularFactor": 0.0}}
-    material = {"name": modifier.identifier, "doubleSided": True,
-                "pbrMetallicRoughness": surface, "extensions": extensions}
+    material = matt(modifier.identifier, [0.0] * 3)
+    surface, extensions = material["pbrMetallicRoughness"], material["extensions"]
     if kind in ("Plastic", "Metal", "Trans"):
         colour = _colour(modifier, "reflectance")
         surface["roughnessFactor"] = math.sqrt(modifier.roughness)
@@ -108,7 +106,7 @@ def _surfaces(model: Any) -> Iterator[tuple[Any, Any]]:
         yield part.geometry, part.properties.radiance.modifier
 
 
-def _gltf(model: Any, warnings: list[str]) -> dict[str, Any]:
+def _gltf(model: Any, warnings: list[str]) -> bytes:
     corners: dict[str, list[Any]] = {}
     modifiers: dict[str, Any] = {}
     for mesh, modifier in _surfaces(model):
@@ -117,54 +115,26 @@ def _gltf(model: Any, warnings: list[str]) -> dict[str, Any]:
         for face in mesh.faces:
             for i in range(2, len(face)):  # Honeybee's quads are convex
                 of_modifier += [tuple(mesh.vertices[k]) for k in (face[0], face[i - 1], face[i])]
-    gltf: dict[str, Any] = {"asset": {"version": "2.0", "generator": "photile.from_honeybee"},
-                            "scene": 0, "materials": [], "meshes": [], "nodes": [],
-                            "accessors": [], "bufferViews": [], "extensionsUsed": []}
-    binary = b""
-    for number, (name, points) in enumerate(corners.items()):
+    gltf = Gltf("photile.from_honeybee")
+    for name, points in corners.items():
         material, lost = _material(modifiers[name])
         if lost:
             warnings.append(f"modifier '{name}': {lost}")
-        array: NDArray[np.float32] = np.array(points, "<f4")
-        gltf["materials"].append(material)
-        gltf["bufferViews"].append(
-            {"buffer": 0, "byteOffset": len(binary), "byteLength": array.nbytes})
-        gltf["accessors"].append({"bufferView": number, "componentType": 5126, "type": "VEC3",
-                                  "count": len(array), "min": array.min(axis=0).tolist(),
-                                  "max": array.max(axis=0).tolist()})
-        gltf["meshes"].append({"name": name, "primitives": [
-            {"attributes": {"POSITION": number}, "material": number}]})
-        gltf["nodes"].append({"name": name, "mesh": number})
-        binary += array.tobytes()
-    gltf["scenes"] = [{"nodes": list(range(len(corners)))}]
-    gltf["extensionsUsed"] = sorted({one for m in gltf["materials"] for one in m["extensions"]})
-    data = base64.b64encode(binary).decode()
-    gltf["buffers"] = [{"byteLength": len(binary),
-                        "uri": f"data:application/octet-stream;base64,{data}"}]
-    return gltf
+        part = (gltf.points(points), None, gltf.material(material))
+        gltf.node(name=name, mesh=gltf.mesh(name, [part]))
+    return gltf.gltf()
 
 
-def _rotation(axis: Any, aim: Any) -> float:
-    """Degrees about the aim that turn photile's lamps so that C0 lies along the axis."""
-    z = -np.array(tuple(aim))
-    # As in luminaires.cpp, in the model's axes: its y up is z here, and its z is -y.
-    level = np.array([1.0, 0, 0]) if abs(z[2]) > 0.999 else np.cross([0, 0, 1.0], z)
-    x = level - (level @ z) * z
-    x /= np.linalg.norm(x)
-    c0 = np.array(tuple(axis))
-    return math.degrees(math.atan2(c0 @ np.cross(z, x), c0 @ x))
-
-
-def _add(texts: dict[str, str], name: str, text: str) -> None:
-    if name in texts:
+def _add(files: dict[str, bytes], name: str, text: str) -> None:
+    if name in files:
         raise ValueError(f"two grids or luminaires have the name '{Path(name).stem}'; rename one")
-    texts[name] = text
+    files[name] = text.encode()
 
 
-def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], dict[str, str]]:
+def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], dict[str, bytes]]:
     """The list that ``--luminaires`` takes, and photometric files by name."""
     entries: list[dict[str, Any]] = []
-    files: dict[str, str] = {}
+    files: dict[str, bytes] = {}
     for lamp in model.properties.radiance.luminaires:
         name, text, factor = lamp.identifier, lamp.ies_content, lamp.light_loss_factor
         factor *= lamp.candela_multiplier
@@ -185,7 +155,8 @@ def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], 
         for number, instance in enumerate(lamp.luminaire_zone or ()):
             entry = {"name": f"{name}_{number + 1}", "file": f"{name}.ies",
                      "position": list(instance.point), "aim": list(instance.g0_axis),
-                     "rotation": _rotation(instance.c0_axis, instance.g0_axis)}
+                     "rotation": luminaire_rotation(tuple(instance.c0_axis), tuple(instance.g0_axis),
+                                                    (0, 0, 1))}
             if small:
                 entry["size"] = [_least_opening, _least_opening]
             entries.append(entry)
@@ -239,18 +210,17 @@ def convert(file: Path, folder: Path) -> tuple[list[str], list[str]]:
     warnings: list[str] = []
     model = _read(file, warnings)
     model.convert_to_units("Meters")
-    texts = {"scene.gltf": json.dumps(_gltf(model, warnings), allow_nan=False)}
+    files = {"scene.gltf": _gltf(model, warnings)}
     command = ["photile", "measure", str(folder / "scene.gltf"), "--set", "up=z"]
     entries, photometry = _luminaires(model, warnings)
     if entries:
-        texts.update(photometry, **{"luminaires.json": json.dumps(entries, indent=1, allow_nan=False)})
+        files.update(photometry)
+        _add(files, "luminaires.json", json.dumps(entries, indent=1, allow_nan=False))
         command += ["--luminaires", str(folder / "luminaires.json")]
     for grid in model.properties.radiance.sensor_grids:
-        _add(texts, f"{grid.identifier}.pts", grid.to_radiance() + "\n")
+        _add(files, f"{grid.identifier}.pts", grid.to_radiance() + "\n")
         command += ["--points", str(folder / f"{grid.identifier}.pts")]
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, text in texts.items():
-        (folder / name).write_text(text, encoding="utf-8")
+    write_files({folder / name: content for name, content in files.items()})
     return [*command, "--honeybee", str(folder / "results")], warnings
 
 
@@ -267,6 +237,9 @@ def main() -> int:
             command, warnings = convert(options.model, options.folder)
     except ImportError as missing:
         print(f"error: {missing}; pip install honeybee-radiance", file=sys.stderr)
+        return 1
+    except OutputError as error:
+        print(f"error: {error}", file=sys.stderr)
         return 1
     except Exception as error:  # Honeybee raises what it likes on malformed files
         print(f"error: {options.model}: {' '.join(str(error).split())};"

@@ -81,7 +81,7 @@ def test_what_a_file_unpacks_to_is_bounded(tmp_path):
                 "from photile.from_gldf import main; sys.exit(main())")
         run = subprocess.run([sys.executable, "-c", code, str(bomb), str(tmp_path / "out")],
                              capture_output=True, text=True, timeout=60)
-        assert run.returncode == 1 and run.stderr.count("\n") == 1, run.stderr
+        assert run.returncode == 3 and run.stderr.count("\n") == 1, run.stderr
         assert "more than" in run.stderr or "at most" in run.stderr, run.stderr
         assert not (tmp_path / "out").exists()
 
@@ -105,12 +105,12 @@ def test_bad_files_are_told_in_one_line(tmp_path):
                        (fluxes[-1], "bright"),
                        (tmp_path / "absent.gldf", "absent.gldf")):
         run = converted(file, tmp_path / "out")
-        assert run.returncode == 1 and run.stdout == ""
+        assert run.returncode == 3 and run.stdout == ""
         assert told in run.stderr and run.stderr.count("\n") == 1
         assert not (tmp_path / "out").exists()
     full = tmp_path / "full"
     full.mkdir()
     (full / "mine").write_text("kept")
     run = converted(archive(tmp_path / "lamp.gldf"), full)
-    assert run.returncode == 1 and "is not empty" in run.stderr
+    assert run.returncode == 2 and "is not empty" in run.stderr
     assert [file.name for file in full.iterdir()] == ["mine"]

@@ -48,6 +48,17 @@ def test_a_page_has_what_the_record_has(record):
     assert page == page_of(record)  # to the byte
 
 
+def test_grids_of_several_rooms_have_no_room_of_their_own(record):
+    other = json.loads(json.dumps(record["grids"][0]))
+    record["grids"][0]["plan"] = {"room": [[-0.5, -0.5], [3.5, 2.5]]}
+    record["grids"].append(other)
+    for height, corners, one in ((0.75, [[-0.5, -0.5], [3.5, 2.5]], True), (0.1, [[-0.5, -0.5], [3.5, 2.5]], True),
+                                 (3.75, [[-0.5, -0.5], [3.5, 2.5]], False), (0.75, [[3.6, -0.5], [7, 2.5]], False)):
+        other["plan"], other["plane"]["origin"][1] = {"room": corners}, height
+        page = page_of(record)
+        assert ("<dd>6.0 m2</dd>" in page) == ("16.67 W/m2" in page) == one and "<dd>100 W</dd>" in page
+
+
 def test_what_is_required_is_judged(record):
     record["target"] = {"name": "Em=150", "reference": "", "what": "", "ugr_limit": 19, "ra": 80,
                         "judgements": [{"grid": "working plane", "figure": "Em", "required": 150,

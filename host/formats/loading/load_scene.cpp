@@ -43,8 +43,10 @@ void import_by_extension(reading::ImportContext& context) {
   } else if (extension == ".gltf" || extension == ".glb") {
     gltf::import_gltf(context);
   } else {
-    throw context.error(
-        fmt::format("unknown scene format '{}'; give an .obj, .gltf or .glb file", extension));
+    throw context.error(fmt::format(
+        "unknown scene format '{}'; {}", extension,
+        extension == ".ifc" ? "convert it by python3 -m photile.from_ifc FILE.ifc -o FILE.glb"
+                            : "give an .obj, .gltf or .glb file"));
   }
 }
 

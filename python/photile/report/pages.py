@@ -37,6 +37,25 @@ def _css(text: str) -> str:
     return "".join(c if c >= " " and c not in "\"\\<>&" else f"\\{ord(c):x} " for c in text)
 
 
+def _of_one_room(record: dict[str, Any]) -> bool:
+    """Whether planes that face the same way lie in one room, as far as their plans have it: only then
+    are the room of the record and all lamps' power over its area those of the report."""
+    rooms: dict[tuple[float, ...], Any] = {}
+    for grid in record.get("grids", []):
+        plane, room = grid.get("plane"), (grid.get("plan") or {}).get("room")
+        if not plane or not room:
+            continue
+        u, v = (np.array(plane[side], float) / np.linalg.norm(plane[side]) for side in "uv")
+        normal = np.cross(u, v)
+        corners = np.sort([np.array(plane["origin"]) + a * u + b * v for a, b in room], axis=0)
+        way = corners - rooms.setdefault(tuple((np.round(normal, 3) + 0.0).tolist()), corners)
+        up = way @ normal
+        # Metres: planes of one room lie above each other, and those of storeys further apart.
+        if np.abs(up).max() > 2 or np.abs(way - up[:, None] * normal).max() > 0.5:
+            return False
+    return True
+
+
 class Report:
     """A record of ``photile measure`` or ``photile daylight``, and the templates that draw it.
 
@@ -45,7 +64,7 @@ class Report:
     """
 
     def __init__(self, record: dict[str, Any], template: str | None = None) -> None:
-        self._record = record
+        self._record = record if _of_one_room(record) else {**record, "room": None}
         self._about: dict[str, Any] = {"subject": "Illuminance", "language": "en", "pictures": [],
                                        "included": [], **record.get("report", {})}
         folders = [pathlib.Path(template)] if template else []

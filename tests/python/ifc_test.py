@@ -1,0 +1,149 @@
+"""A building of IFC as a scene: a room of 5 x 4 x 3 m between two slabs, with a pane and two fixtures."""
+
+import csv
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+import photile
+
+ifcopenshell = pytest.importorskip("ifcopenshell", reason="no ifcopenshell; cmake/fetch.sh test-packages brings it")
+
+SLAB, PANE = 2 * (5 * 4 + 5 * 0.2 + 4 * 0.2), 2 * (2 * 1.5 + 2 * 0.02 + 1.5 * 0.02)  # m2
+LUMENS = 1200
+LAMP = "IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0 1 1 10\n0 45 90\n0\n400 300 0\n"
+
+
+class Model:
+    """Boxes by their lowest corner and sides, mm."""
+
+    guid = staticmethod(ifcopenshell.guid.new)
+
+    def __init__(self):
+        self.file = ifcopenshell.file(schema="IFC4")
+        units = self.make("IfcUnitAssignment", [self.make("IfcSIUnit", None, "LENGTHUNIT", "MILLI", "METRE")])
+        self.origin = self.axes(0, 0, 0)
+        self.context = self.make("IfcGeometricRepresentationContext", None, "Model", 3, 1e-5, self.origin)
+        self.make("IfcProject", self.guid(), RepresentationContexts=[self.context], UnitsInContext=units)
+
+    def make(self, kind, *values, **named):
+        return self.file.create_entity(kind, *values, **named)
+
+    def axes(self, *point):
+        return self.make("IfcAxis2Placement3D", self.make("IfcCartesianPoint", [float(x) for x in point]))
+
+    def box(self, kind, name, low, sides, style=None, properties=None, light=None, **named):
+        across, along, up = map(float, sides)
+        middle = self.make("IfcCartesianPoint", [across / 2, along / 2])
+        profile = self.make("IfcRectangleProfileDef", "AREA", None, self.make("IfcAxis2Placement2D", middle),
+                            across, along)
+        upwards = self.make("IfcDirection", [0.0, 0.0, 1.0])
+        body = self.make("IfcExtrudedAreaSolid", profile, self.origin, upwards, up)
+        if style:
+            self.make("IfcStyledItem", body, [style])
+        items = [("Body", "SweptSolid", body)] + ([("LightSource", "LightSource", light)] if light else [])
+        shape = self.make("IfcProductDefinitionShape", None, None, [
+            self.make("IfcShapeRepresentation", self.context, *words, [item]) for *words, item in items])
+        element = self.make(kind, self.guid(), Name=name, Representation=shape, **named,
+                            ObjectPlacement=self.make("IfcLocalPlacement", None, self.axes(*low)))
+        if properties:
+            values = [self.make("IfcPropertySingleValue", key, None, self.make("IfcReal", float(value)))
+                      for key, value in properties.items()]
+            known = self.make("IfcPropertySet", self.guid(), None, "Pset", None, values)
+            self.make("IfcRelDefinesByProperties", self.guid(), None, None, None, [element], known)
+
+    def style(self, name, grey, transparency):
+        shading = self.make("IfcSurfaceStyleShading", self.make("IfcColourRgb", None, *[grey] * 3), transparency)
+        return self.make("IfcSurfaceStyle", name, "BOTH", [shading])
+
+    def source(self):
+        """Even below the horizontal: 1 / 2 pi candela per lumen. Angles are radians."""
+        plane = self.make("IfcLightDistributionData", 0.0, [0.0, math.pi / 2], [0.5 / math.pi] * 2)
+        data = self.make("IfcLightIntensityDistribution", "TYPE_C", [plane])
+        white = self.make("IfcColourRgb", None, 1.0, 1.0, 1.0)
+        return self.make("IfcLightSourceGoniometric", None, white, None, None, self.axes(300, 300, -10), white,
+                         4000.0, float(LUMENS), "LIGHTEMITTINGDIODE", data)
+
+
+@pytest.fixture
+def room(tmp_path):
+    model = Model()
+    plaster = model.style("Plaster", 0.5, 0.0)
+    for low in (-200, 3000):
+        model.box("IfcSlab", "slab", (10000, 2000, low), (5000, 4000, 200), plaster)
+    model.box("IfcWindow", "pane", (12000, 2000, 1000), (2000, 20, 1500), model.style("Clear", 0.2, 0.9),
+              {"VisibleLightTransmittance": 0.6})
+    model.box("IfcSpace", "101", (10000, 2000, 0), (5000, 4000, 3000), LongName="Büro")
+    model.box("IfcLightFixture", "A", (12000, 3000, 2900), (600, 300, 100), None,
+              {"LuminousFlux": 900, "TotalWattage": 9}, ObjectType="Lamp/1", Tag="7")
+    model.box("IfcLightFixture", "B", (11000, 3000, 2900), (600, 600, 100), None, None, model.source(),
+              ObjectType="Lamp 1", Tag="8")
+    model.file.write(str(tmp_path / "room.ifc"))
+    (tmp_path / "lamp.ies").write_text(LAMP)
+    return tmp_path
+
+
+def converted(*arguments):
+    command = [sys.executable, "-m", "photile.from_ifc", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+def test_elements_rooms_and_fixtures_are_where_the_model_has_them(room):
+    out = room / "out"
+    made = converted(room / "room.ifc", "-o", out / "a.glb", "--ies", f"Lamp/1={room / 'lamp.ies'}")
+    assert made.returncode == 0 and "warning" not in made.stderr, made.stderr
+    scene = photile.load(out / "a.glb", sky=("uniform", 1000))
+    named = {material.name: (material, scene.triangle_areas[scene.triangle_material == i].sum())
+             for i, material in enumerate(scene.materials)}
+    plaster, area = named["Plaster"]
+    assert area == pytest.approx(2 * SLAB) and plaster.diffuse == pytest.approx([((0.5 + 0.055) / 1.055) ** 2.4] * 3)
+    pane, area = named["Clear"]
+    assert area == pytest.approx(PANE, rel=1e-5) and pane.interaction == "glass" and pane.thin
+    face = ((pane.index_of_refraction - 1) / (pane.index_of_refraction + 1)) ** 2
+    reflects, passes = 2 * face / (1 + face), (1 - face) / (1 + face) * pane.transmission[0]
+    assert passes**2 / (1 - reflects**2) == pytest.approx(0.6, rel=1e-5)  # both faces, and light between them
+    (office,) = json.loads((out / "a.rooms.json").read_text())
+    assert [office[key] for key in ("name", "number", "long_name")] == ["101 Büro", "101", "Büro"]
+    assert [office[key] for key in ("area", "height", "floor")] == pytest.approx([20, 3, 0])
+    assert office["inside"] == pytest.approx([12.5, 1.5, -4])
+    (grid,) = json.loads((out / "a.grids.json").read_text())
+    assert grid == {"name": "101 Büro", "origin": [10.5, 0.75, -2.5], "u": [4, 0, 0], "v": [0, 0, -3]}
+    assert [camera.name for camera in scene.cameras] == ["101 Büro"]
+    with open(out / "a.luminaires.csv", newline="") as file:
+        first, second = csv.DictReader(file)
+    assert list(first.values())[:3] + list(first.values())[6:8] == ["Lamp/1", "7", "101 Büro", "900", "9"]
+    assert [float(first[axis]) for axis in "xyz"] == pytest.approx([12.3, 2.9 - 0.005, -3.15])
+    assert [float(second[axis]) for axis in "xyz"] == pytest.approx([11.3, 2.89, -3.3])
+    assert first["file"] == "a.lamp.ies" and (out / first["file"]).read_text() == LAMP
+    entries = json.loads((out / "a.luminaires.json").read_text())
+    assert len({entry["name"] for entry in entries}) == 2
+    assert entries[0]["size"] == [0.6, 0.3] and entries[0]["aim"] == [0, -1, 0] and entries[0]["rotation"] == 0
+    info = subprocess.run([os.environ["PHOTILE_COMMAND"], "info", "--json", out / "a.glb", "--luminaires",
+                           out / "a.luminaires.json"], capture_output=True, check=True)
+    lights = {light["name"]: light["lumens"] for light in json.loads(info.stdout)["lights"]}
+    assert lights[entries[1]["name"]] == pytest.approx(LUMENS, rel=1e-4)
+    assert converted(room / "room.ifc", "-o", out / "b.glb").returncode == 0
+    assert (out / "a.glb").read_bytes() == (out / "b.glb").read_bytes()
+
+
+def test_what_cannot_be_converted_is_refused_in_a_line(room):
+    (room / "text.ifc").write_text("PK not STEP")
+    text = (room / "room.ifc").read_text().replace("IFCLIGHTFIXTURE", "IFCBUILDINGELEMENTPROXY")
+    # Placements in themselves, on which ifcopenshell 0.9 crashes.
+    (room / "damaged.ifc").write_text(re.sub(r"#(\d+)=IFCLOCALPLACEMENT\(\$", r"#\1=IFCLOCALPLACEMENT(#\1", text))
+    for code, said, *arguments in (
+            (3, "not an IFC file", room / "text.ifc"), (3, "damaged.ifc", room / "damaged.ifc"),
+            (3, "no such file", room / "absent.ifc"),
+            (2, "101 Büro", room / "room.ifc", "--rooms", "102*"),
+            (2, "Lamp 1, Lamp/1", room / "room.ifc", "--ies", "Spot=x.ies"),
+            (3, "x.ies", room / "room.ifc", "--ies", "Lamp*=x.ies")):
+        made = converted(*arguments, "-o", room / "out" / "a.glb")
+        assert made.returncode == code and made.stdout == "" and made.stderr.count("\n") == 1, made.stderr
+        assert said in made.stderr and not (room / "out").exists()
+    assert converted(room / "room.ifc", "-o", room / "lamp.ies").returncode == 2
+    assert (room / "lamp.ies").read_text() == LAMP
