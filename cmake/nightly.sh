@@ -91,7 +91,7 @@ step "build threads" cmake/build.sh threads \
 # On one processor, where oneTBB has no threads of its own, and without the test that asks for them:
 # docs/reference/testing.md.
 step "threads" taskset -c 0 ctest --preset threads --no-tests=error -E reproducib \
-  -R "^((view|cache|trace|groups|daylight)/|render/(several|shared_rendering|load_balance))"
+  -R "^((view|cache|trace|groups|daylight)/|render/(several|shared_rendering))"
 step "build fuzzers" cmake/build.sh fuzzers photile_fuzz
 step "soak" bench/tools/soak.sh "$hours"
 step "build coverage" cmake/build.sh coverage photile_fuzz

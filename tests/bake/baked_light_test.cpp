@@ -2,7 +2,6 @@
 // lie on a picture.
 #include "bake/baked_light.hpp"
 
-#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -11,7 +10,6 @@
 
 #include "cache/node_sources.hpp"
 #include "photile/errors.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -89,7 +87,7 @@ TEST_CASE("Baked textures hold the irradiance of both sides at points of the sur
 
 TEST_CASE("Lookups beside a box on the floor take nothing of what lies under it") {
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
   builder.box({0.313f, 0.313f, 0.0f}, {0.687f, 0.687f, 0.2f}, white, false);
   const Scene scene = with_one_lamp(std::move(builder).build());
@@ -138,7 +136,7 @@ TEST_CASE("Lookups beside a plate a little above the floor take nothing of the s
     decltype(below) below_;
   };
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
   builder.box({0.313f, 0.313f, 0.002f}, {0.687f, 0.687f, 0.03f}, white, true);
   const Scene scene = with_one_lamp(std::move(builder).build());
@@ -192,7 +190,7 @@ TEST_CASE("Sides that neither light nor an eye comes to are not open") {
   // Sides of a closed box on a floor that look to its middle, and the others.
   const auto open_of_box = [](const glm::vec3& lamp) {
     SceneBuilder builder;
-    const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+    const std::uint32_t white = builder.add(diffuse(0.5f));
     builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
     builder.box({0.3f, 0.3f, 0.0f}, {0.7f, 0.7f, 0.5f}, white, false);
     builder.add(point_light("lamp", lamp));
@@ -215,7 +213,7 @@ TEST_CASE("Sides that neither light nor an eye comes to are not open") {
 
 TEST_CASE("A side that nothing comes to is open where it goes on from one that something does") {
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, white);
   // A prism with a lid hides all of the second triangle and a strip of the first.
   const glm::vec3 a(-0.1f, -0.2f, 0), b(1.2f, 1.1f, 0), c(-0.1f, 1.1f, 0), up(0, 0, 0.3f);

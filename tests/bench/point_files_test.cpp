@@ -1,12 +1,7 @@
 // Points of a file, timed; meshes, options and samples of the benches.
-#include <stdlib.h>
 
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <fstream>
-#include <iterator>
 #include <random>
-#include <set>
 
 #include "file_bytes.hpp"
 #include "photile/errors.hpp"
@@ -30,7 +25,7 @@ namespace {
 using bench::PointFile;
 using bench::read_points;
 using Catch::Contains;
-using namespace photile::bench;
+using namespace bench;
 
 // Points that a user brings: what files hold, and what is said of those that hold something else.
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of bench/kernels/report*.py against values worked out by hand. Exits with 77 (skipped) where
+"""Tests of bench/kernels/report*.py and bench/pictures/trade_plot.py against values worked out by hand. Exits with 77 (skipped) where
 python3-matplotlib is not installed.
 
     tests/bench/report_test.py
@@ -8,13 +8,16 @@ python3-matplotlib is not installed.
 import math
 import pathlib
 import sys
+import tempfile
 import unittest
 import unittest.mock
+import xml.etree.ElementTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench"))
 try:
     from kernels import (report_kernels, report_lights, report_plots, report_scale, report_tables,
                          report_targets)
+    from pictures import trade_plot
 except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
@@ -183,6 +186,31 @@ class Lights(unittest.TestCase):
         text = report_lights.text(result)
         self.assertIn("From 1 to 256 lights", text)
         self.assertIn("| 256 | " + "512 (512-512) | " * len(stages) + "256 | 4.1e+03 | 0.5 |", text)
+
+
+def point(varied, seconds, error):
+    return {"varied": varied, "first_picture_seconds": seconds, "frame_seconds": seconds / 2,
+            "relative_error": error}
+
+
+POINTS = [point("nothing", 2, 0.2), point("radius", 1, 0.5), point("radius", 3, 0.3),
+          point("maps", 4, 0.1)]
+
+
+class TradePlot(unittest.TestCase):
+    def test_the_front_leaves_out_what_something_faster_beats(self):
+        best = trade_plot.front(POINTS, "frame_seconds")
+        self.assertEqual([p["relative_error"] for p in best], [0.5, 0.2, 0.1])
+
+    def test_the_plot_names_what_was_varied(self):
+        record = {"scene": "a & b.obj", "width": 4, "height": 3, "renderings": POINTS}
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "plot.svg"
+            trade_plot.draw(record, file)
+            text = file.read_text(encoding="utf-8")
+        xml.etree.ElementTree.fromstring(text)
+        for name in ("nothing", "radius", "maps", "a &amp; b.obj"):
+            self.assertIn(name, text)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,8 @@
 // Which triangles share a chart, and which point of the surface a node stands for.
 #include "cache/charts.hpp"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <set>
 
 #include "test_scenes.hpp"
 
@@ -24,11 +22,16 @@ glm::dvec3 point_of(const Scene& scene, const Charts::Support& support) {
          double{support.where.v} * glm::dvec3(c - a);
 }
 
+Scene below_a_lamp(SceneBuilder& builder) {
+  builder.add(point_light("lamp", {0, 0, 1}));
+  return builder.build();
+}
+
 }  // namespace
 
 TEST_CASE("A wall is one chart a side, however finely it is cut") {
   for (const int cells : {1, 7}) {
-    const Scene box = closed_box(diffuse(glm::vec3(0.5f)), cells);
+    const Scene box = closed_box(diffuse(0.5f), cells);
     const Charts charts(box, 0.04, 60);
     CHECK(charts.size() == 12);  // six walls, inside and outside
     for (std::uint32_t t = 0; t < box.triangle_count(); ++t) {
@@ -40,28 +43,24 @@ TEST_CASE("A wall is one chart a side, however finely it is cut") {
 TEST_CASE("Tiles that touch along edges only share a chart") {
   // A wide tile beside two narrow ones: no two share both corners of an edge.
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
   builder.grid({1, 0, 0}, {1, 0, 0}, {0, 0.4f, 0}, 1, white);
   builder.grid({1, 0.4f, 0}, {1, 0, 0}, {0, 0.6f, 0}, 1, white);
-  builder.add(point_light("lamp", {0, 0, 1}));
-  const Scene scene = builder.build();
-  CHECK(Charts(scene, 0.04, 60).size() == 2);
+  CHECK(Charts(below_a_lamp(builder), 0.04, 60).size() == 2);
 }
 
 TEST_CASE("Plates that lie on each other have charts of their own") {
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
   builder.grid({0.2f, 0.2f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, 1, white);
   builder.grid({0, 0, 0.001f}, {1, 0, 0}, {0, 1, 0}, 2, white);
-  builder.add(point_light("lamp", {0, 0, 1}));
-  const Scene scene = builder.build();
-  CHECK(charts_of(Charts(scene, 0.04, 60)).size() == 6);
+  CHECK(charts_of(Charts(below_a_lamp(builder), 0.04, 60)).size() == 6);
 }
 
 TEST_CASE("Mirrors and glass have no chart") {
-  const Scene scene = plate(mirror(glm::vec3(1.0f)), 1.0f);
+  const Scene scene = plate(mirror(1.0f), 1.0f);
   CHECK(charts_of(Charts(scene, 0.04, 60)) == std::set<std::uint32_t>{none});
 }
 
@@ -71,9 +70,8 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it") {
   const glm::vec3 u = 1.13f * glm::normalize(glm::vec3(0.6f, 0.8f, 0.1f));
   const glm::vec3 v = 0.57f * glm::normalize(glm::cross(u, glm::vec3(0.3f, 0.1f, 0.9f)));
   const glm::vec3 origin(2, 1, 0.5f);
-  builder.grid(origin, u, v, 3, builder.add(diffuse(glm::vec3(0.5f))));
-  builder.add(point_light("lamp", {0, 0, 1}));
-  const Scene scene = builder.build();
+  builder.grid(origin, u, v, 3, builder.add(diffuse(0.5f)));
+  const Scene scene = below_a_lamp(builder);
   Charts charts(scene, 0.04, 60);
   constexpr int levels = 4;
   // Within a corner a node lies farther off than from an edge.
@@ -107,9 +105,8 @@ TEST_CASE("The corners of a rectangle are nodes, and so are places on it") {
 TEST_CASE("A node beyond an edge stands for the nearest point of the edge") {
   // A right triangle: the far half of its rectangle has no surface.
   SceneBuilder builder;
-  builder.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.add(diffuse(glm::vec3(0.5f))));
-  builder.add(point_light("lamp", {0, 0, 1}));
-  const Scene scene = builder.build();
+  builder.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, builder.add(diffuse(0.5f)));
+  const Scene scene = below_a_lamp(builder);
   Charts charts(scene, 0.04, 60);
   for (std::uint32_t i = 0; i < charts.size(); ++i) {
     charts.prepare(i);
@@ -138,7 +135,7 @@ TEST_CASE("A node beyond an edge stands for the nearest point of the edge") {
 TEST_CASE("Owners in charts of many triangles are those that looking at all finds") {
   // A wavy sheet: charts of many triangles, none of them flat.
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   const auto at = [](int i, int j) {
     const double x = 0.031 * i, y = 0.023 * j;
     return glm::vec3(x, y, 0.01 * std::sin(9 * x) * std::cos(7 * y));
@@ -147,8 +144,7 @@ TEST_CASE("Owners in charts of many triangles are those that looking at all find
     for (int j = 0; j < 20; ++j)
       builder.quad(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), white);
   }
-  builder.add(point_light("lamp", {0, 0, 1}));
-  const Scene scene = builder.build();
+  const Scene scene = below_a_lamp(builder);
   Charts with_trees(scene, 0.04, 60);
   const Charts without(scene, 0.04, 60);
   for (std::uint32_t i = 0; i < with_trees.size(); ++i) {

@@ -1,14 +1,11 @@
 // Light between nodes while others are lacking: without steps, spots and squares.
 #include "cache/frame_view.hpp"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <optional>
-#include <vector>
 
 #include "cache/node_sources.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -42,7 +39,7 @@ struct Floor {
         maps(rays, quiet_parameters(0.5, levels), source) {}
 
   static Scene floor_scene() {
-    Scene scene = plate(diffuse(glm::vec3(0.5f)), floor_side);
+    Scene scene = plate(diffuse(0.5f), floor_side);
     for (glm::vec3& position : scene.vertices)
       position += glm::vec3(0.5f * floor_side, 0.5f * floor_side, 0);
     return scene;

@@ -4,17 +4,13 @@
 
 #include <tbb/global_control.h>
 
-#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <numeric>
 
-#include "cache/light_maps.hpp"
 #include "cache/node_sources.hpp"
 #include "gathering.hpp"
 #include "light/light_at_points.hpp"
-#include "test_scenes.hpp"
 #include "validation/analytic_cases.hpp"
 
 namespace photile::test {
@@ -95,16 +91,10 @@ std::array<double, 2> errors_of(const GatheredMaps& maps, const PrimaryHits& hit
 
 TEST_CASE("gathered nodes: a furnace is the same all over, corners and edges among it") {
   constexpr double albedo = 0.5;
-  const Scene box = furnace(diffuse(glm::vec3(albedo)));
+  const Scene box = furnace(diffuse(albedo));
   GatheringScene gathering(box, looked_up(200'000));
   GatheredMaps maps(gathering, few_rays);
-  PrimaryHits inside;
-  const PrimaryHits all = points_on(box, 12);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (side_of(all.oriented_face[i]) == box.front_side[triangle_of(all.oriented_face[i])]) {
-      add_hit(inside, all.position[i], all.oriented_face[i]);
-    }
-  }
+  const PrimaryHits inside = hits_where(points_on(box, 12), fronts_of(box));
   maps.fill(inside);
   const double truth = 1.0 / 6 / (1 - albedo);  // 1 lm over 6 m2, and each bounce returns half
   const auto [rms, mean] = errors_of(maps, inside, [&](const glm::vec3&) { return truth; });
@@ -115,21 +105,14 @@ TEST_CASE("gathered nodes: a furnace is the same all over, corners and edges amo
 
 TEST_CASE("gathered nodes: no light passes a wall that stands on one floor") {
   SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, black);
   builder.grid({0.1f, -3, 0}, {0, 6, 0}, {0, 0, 3}, 1, black);
   // Long, so that few samples are not sure of its light.
   builder.grid({0.2f, -3, 1}, {0, 6, 0}, {0.1f, 0, 0}, 1, black, builder.add(area_light("lamp")));
   GatheringScene rooms(builder.build(), looked_up(20'000));
   GatheredMaps maps(rooms, {{16, 16}, {8, 8}});
-  PrimaryHits floor;
-  const PrimaryHits all = points_on(rooms.scene, 14);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::uint32_t triangle = triangle_of(all.oriented_face[i]);
-    if (triangle < 8 && side_of(all.oriented_face[i]) == rooms.scene.front_side[triangle]) {
-      add_hit(floor, all.position[i], all.oriented_face[i]);
-    }
-  }
+  const PrimaryHits floor = hits_where(points_on(rooms.scene, 14), fronts_of(rooms.scene, 8));
   maps.fill(floor);
   double behind = 0, before = 0;
   for (std::size_t i = 0; i < floor.size(); ++i) {
@@ -143,18 +126,11 @@ TEST_CASE("gathered nodes: no light passes a wall that stands on one floor") {
 
 TEST_CASE("gathered nodes: direct light is that of form factors, closer than rays alone tell it") {
   SceneBuilder builder;
-  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, builder.add(diffuse(glm::vec3(0.5f))));
-  builder.grid({0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))),
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, builder.add(diffuse(0.5f)));
+  builder.grid({0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(diffuse(0.0f)),
                builder.add(area_light("lamp")));
   GatheringScene plain(builder.build(), looked_up(20'000));
-  PrimaryHits floor;
-  const PrimaryHits all = points_on(plain.scene, 14);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::uint32_t triangle = triangle_of(all.oriented_face[i]);
-    if (triangle < 8 && side_of(all.oriented_face[i]) == plain.scene.front_side[triangle]) {
-      add_hit(floor, all.position[i], all.oriented_face[i]);
-    }
-  }
+  const PrimaryHits floor = hits_where(points_on(plain.scene, 14), fronts_of(plain.scene, 8));
   const auto truth = [](const glm::vec3& position) {
     return validation::rectangle_factor(glm::dvec3(position), {0, 0, 1}, {0.5, -0.5, 1}, {1, 0, 0},
                                         {0, 1, 0});
@@ -180,8 +156,8 @@ TEST_CASE("gathered nodes: the filter of finer nodes leaves the mean of what few
   // A lit plate above a floor, which one ray of eight meets: a node that few rays of its own
   // brought light to states a small error, and must not be believed more than one that many did.
   SceneBuilder builder;
-  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
-  builder.grid({-0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.8f))));
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(0.0f)));
+  builder.grid({-0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(diffuse(0.8f)));
   builder.add(spot_light("lamp", {0, 0, 0.2f}, {0, 0, 1}, 0.1f, 0.5f));
   GatheringScene scene(builder.build(), looked_up(200'000));
   constexpr int side = 40;
@@ -218,7 +194,7 @@ TEST_CASE("gathered nodes: the filter of finer nodes leaves the mean of what few
 
 TEST_CASE("gathered nodes: a wall is dark below the horizon of a bright lamp beside it") {
   SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   builder.grid({-0.6f, 0, -0.6f}, {1.2f, 0, 0}, {0, 0, 1.2f}, 1, black);  // its front to y < 0
   // A lamp that shines upwards, 2 mm from the wall; and a faint one far away.
   const glm::dvec3 corner{-0.11, -0.102, 0}, far{-0.5, -3, -0.5};
@@ -231,15 +207,11 @@ TEST_CASE("gathered nodes: a wall is dark below the horizon of a bright lamp bes
     return validation::rectangle_factor(glm::dvec3(position), {0, -1, 0}, far, {1, 0, 0},
                                         {0, 0, 1});
   };
-  PrimaryHits below;
-  const PrimaryHits all = points_on(plain.scene, 60);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const glm::vec3& at = all.position[i];
-    if (triangle_of(all.oriented_face[i]) < 2 && at.z < -0.015f && at.z > -0.2f &&
-        face_normal(plain.scene, all.oriented_face[i]).y < 0 && std::abs(at.x) < 0.3f) {
-      add_hit(below, at, all.oriented_face[i]);
-    }
-  }
+  const PrimaryHits below =
+      hits_where(points_on(plain.scene, 60), [&](const glm::vec3& at, std::uint32_t face) {
+        return triangle_of(face) < 2 && at.z < -0.015f && at.z > -0.2f &&
+               face_normal(plain.scene, face).y < 0 && std::abs(at.x) < 0.3f;
+      });
   REQUIRE(below.size() > 100);
   GatheredMaps maps(plain, few_rays, 0.04);
   maps.fill(below);
@@ -341,18 +313,12 @@ TEST_CASE("gathered nodes: many lights, each in its layer, are what their group 
 }
 
 TEST_CASE("gathered nodes: rays that go on from those before are those of both at once") {
-  Scene box = closed_box(diffuse(glm::vec3(0.5f)));
+  Scene box = closed_box(diffuse(0.5f));
   box.lights = {area_light("lamp")};
   box.triangle_light[0] = 0;
   box.lights[0].triangles = {0};
   GatheringScene lit(box, looked_up(50'000));
-  PrimaryHits hits;
-  const PrimaryHits all = points_on(box, 6);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (side_of(all.oriented_face[i]) == box.front_side[triangle_of(all.oriented_face[i])]) {
-      add_hit(hits, all.position[i], all.oriented_face[i]);
-    }
-  }
+  const PrimaryHits hits = hits_where(points_on(box, 6), fronts_of(box));
   const auto points_of = [&](int rays, cache::GatheredPoints former) {
     cache::IrradianceGather gather = lit.gather({});
     const cache::LightMapParameters parameters = GatheredMaps::parameters_of(lit, 0.32);
@@ -384,7 +350,7 @@ TEST_CASE("gathered nodes: rays that go on from those before are those of both a
 }
 
 TEST_CASE("gathered nodes: rays go by the room that a scene has for nodes, and by what shines") {
-  Scene room = closed_box(diffuse(glm::vec3(0.5f)));  // a cube of 6 m2
+  Scene room = closed_box(diffuse(0.5f));  // a cube of 6 m2
   room.lights = {point_light("lamp", {0.5f, 0.5f, 0.5f})};
   const auto rays_at = [&](double spacing) {
     const cache::GatheredNodesParameters rays = cache::rays_of_nodes(room, 64, spacing);

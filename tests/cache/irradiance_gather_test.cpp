@@ -5,7 +5,6 @@
 #include <tbb/global_control.h>
 
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <numbers>
 
 #include "gathering.hpp"
@@ -13,7 +12,6 @@
 #include "photile/scene.hpp"
 #include "render/path_estimate.hpp"
 #include "statistical_tests.hpp"
-#include "test_scenes.hpp"
 #include "trace/emission_sampling.hpp"
 #include "validation/analytic_cases.hpp"
 
@@ -31,7 +29,7 @@ double lux(const LightTable& light, std::size_t estimate) {
 /// A floor, and a lamp that shines up, away from it, at a mirror 0.2 m above. Material 0 is black.
 SceneBuilder lamp_below_mirror() {
   SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, black);
   builder.grid({-9, -9, 1.2f}, {0, 18, 0}, {18, 0, 0}, 1, builder.add(mirror({1, 1, 1})));
   builder.grid({1.1f, -0.2f, 1}, {0.2f, 0, 0}, {0, 0.4f, 0}, 1, black,
@@ -113,7 +111,7 @@ void check_against_paths(const Scene& scene, double bias,
 
 TEST_CASE("gathering: a furnace reads its closed form, in corners, too") {
   constexpr double albedo = 0.5;
-  const Scene scene = furnace(diffuse(glm::vec3(albedo)));
+  const Scene scene = furnace(diffuse(albedo));
   std::vector<Sensor> sensors{{{0.4, 0.6, 0}, up}};
   for (const double x : {0.02, 0.98})
     for (const double y : {0.03, 0.97}) sensors.push_back({{x, y, 0}, up});
@@ -133,8 +131,8 @@ TEST_CASE("gathering: a furnace reads its closed form, in corners, too") {
 
 TEST_CASE("gathering: direct light is that of form factors, within its own error") {
   SceneBuilder builder;
-  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, builder.add(diffuse(glm::vec3(0.5f))));
-  builder.grid({0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))),
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, builder.add(diffuse(0.5f)));
+  builder.grid({0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(diffuse(0.0f)),
                builder.add(area_light("lamp")));
   GatheringScene plain(builder.build(), looked_up(20'000));
   const std::vector<Sensor> sensors = sensors_on({-1.5, -1.5, 0}, {3, 0, 0}, {0, 3, 0}, up, 20);
@@ -154,7 +152,7 @@ TEST_CASE("gathering: direct light is that of form factors, within its own error
 
 TEST_CASE("gathering: lamps and suns without size are sampled once, which is exact") {
   SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, black);
   builder.grid({0.5f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, 1, black, builder.add(area_light("lamp")));
   const glm::dvec3 bulb(-0.4, 0.3, 1.2);
@@ -192,7 +190,7 @@ TEST_CASE("gathering: light gathered from near surface is that of paths, with le
 TEST_CASE("gathering: light gathered from near coats is that of paths, with less bias", "[slow]") {
   Scene scene = furnished_room();
   for (Material& material : scene.materials) {
-    material = glossy(glm::vec3(0.5f), glm::vec3(0.04f), 0.3f);
+    material = glossy(0.5f, 0.04f, 0.3f);
   }
   check_against_paths(scene, 0.02, {.near = 0.6});
 }
@@ -201,11 +199,9 @@ TEST_CASE("gathering: a board within a rim of metal is lit as paths find it") {
   // Its edge is held by a closed profile, where next to no light is; photons of the faces of that
   // which look up count among the neighbours of those that look aside.
   SceneBuilder builder;
-  builder.box(glm::vec3(-2, -2, 0), glm::vec3(4, 2, 3), builder.add(diffuse(glm::vec3(0.5f))),
-              true);
-  builder.grid({-0.004f, -1, 0.008f}, {1.5f, 0, 0}, {0, 2, 0}, 2,
-               builder.add(diffuse(glm::vec3(0.7f))));
-  const std::uint32_t metal = builder.add(glossy(glm::vec3(0.0f), glm::vec3(0.58f), 0.4f));
+  builder.box(glm::vec3(-2, -2, 0), glm::vec3(4, 2, 3), builder.add(diffuse(0.5f)), true);
+  builder.grid({-0.004f, -1, 0.008f}, {1.5f, 0, 0}, {0, 2, 0}, 2, builder.add(diffuse(0.7f)));
+  const std::uint32_t metal = builder.add(glossy(0.0f, 0.58f, 0.4f));
   const std::vector<glm::vec3> profile{{0, -1, 0.001f},         {0, -1, 0.0108f},
                                        {-0.0018f, -1, 0.0115f}, {-0.0048f, -1, 0.0177f},
                                        {-0.0108f, -1, 0.02f},   {-0.0156f, -1, 0.0177f},
@@ -213,7 +209,7 @@ TEST_CASE("gathering: a board within a rim of metal is lit as paths find it") {
   for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
     builder.grid(profile[i], {0, 2, 0}, profile[i + 1] - profile[i], 1, metal);
   }
-  builder.grid({3.99f, -1, 1}, {0, 0, 1}, {0, 2, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))),
+  builder.grid({3.99f, -1, 1}, {0, 0, 1}, {0, 2, 0}, 1, builder.add(diffuse(0.0f)),
                builder.add(area_light("lamp")));
   GatheringScene room(builder.build(), looked_up(200'000));
   std::vector<Sensor> sensors = sensors_on({-0.003, -0.5, 0.0081}, {0.002, 0, 0}, {0, 1, 0}, up, 5);
@@ -236,10 +232,10 @@ TEST_CASE("gathering: what slats reflect into a room is the light of the parts t
   // Their outer edges, next to the window, are much brighter than what the room sees of them, and
   // an estimate of photons is wider than a slat.
   SceneBuilder builder;
-  builder.box(glm::vec3(0), glm::vec3(4, 3, 2.7f), builder.add(diffuse(glm::vec3(0.02f))), true);
-  builder.grid({1.2f, 0.002f, 0.9f}, {0, 0, 1.2f}, {1.6f, 0, 0}, 1,
-               builder.add(diffuse(glm::vec3(0.0f))), builder.add(area_light("window")));
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.7f)));
+  builder.box(glm::vec3(0), glm::vec3(4, 3, 2.7f), builder.add(diffuse(0.02f)), true);
+  builder.grid({1.2f, 0.002f, 0.9f}, {0, 0, 1.2f}, {1.6f, 0, 0}, 1, builder.add(diffuse(0.0f)),
+               builder.add(area_light("window")));
+  const std::uint32_t white = builder.add(diffuse(0.7f));
   for (float z = 0.9f; z < 2.1f; z += 0.022f) {
     builder.grid({1.2f, 0.01f, z}, {1.6f, 0, 0}, {0, 0.0205f, 0.0143f}, 1, white);
   }
@@ -258,9 +254,7 @@ TEST_CASE("gathering: what slats reflect into a room is the light of the parts t
 
 TEST_CASE("gathering: layers of glossy rooms are those of paths", "[slow]") {
   Scene scene = furnished_room();
-  SECTION("a coat on the floor and the walls") {
-    scene.materials[0] = glossy(glm::vec3(0.6f), glm::vec3(0.04f), 0.3f);
-  }
+  SECTION("a coat on the floor and the walls") { scene.materials[0] = glossy(0.6f, 0.04f, 0.3f); }
   SECTION("a metal") { scene.materials[1] = glossy(glm::vec3(0.0f), {0.9f, 0.7f, 0.5f}, 0.3f); }
   SECTION("a mirror") { scene.materials[1] = mirror({0.9f, 0.8f, 0.7f}); }
   scene.lights.pop_back();  // paths cannot find caustics of lamps without size
@@ -270,9 +264,8 @@ TEST_CASE("gathering: layers of glossy rooms are those of paths", "[slow]") {
 TEST_CASE("gathering: the light of a caustic arrives once") {
   const Scene scene = lamp_below_mirror().build();
   const std::vector<Sensor> sensors = sensors_on({-0.3, -0.3, 0}, {0.6, 0, 0}, {0, 0.6, 0}, up, 6);
-  std::vector<double> ratio;
   double squares = 0, stated = 0;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+  const std::vector<double> ratio = of_seeds([&](std::uint64_t seed) {
     GatheringScene place(scene, looked_up(60'000, seed));
     const LightTable light = place.at(sensors);
     double sum = 0, truth = 0;
@@ -285,8 +278,8 @@ TEST_CASE("gathering: the light of a caustic arrives once") {
       squares += std::pow(lux(light, i) - expected, 2);
       stated += std::pow(light.error(i), 2);
     }
-    ratio.push_back(sum / truth);
-  }
+    return sum / truth;
+  });
   CHECK_VERDICT(mean_is(ratio, 1.0, 0.1));
   const double error_over_stated = std::sqrt(squares / stated);
   CAPTURE(error_over_stated);
@@ -298,9 +291,8 @@ TEST_CASE("gathering: a caustic ends where the image of its mirror ends") {
   // A spot shines up at a mirror of 0.2 m, 0.2 m above: its image, 1.4 m above the floor, lights a
   // square of 1.4 m.
   SceneBuilder builder;
-  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, builder.add(diffuse(glm::vec3(0.0f))));
-  builder.grid({-0.1f, -0.1f, 1.2f}, {0, 0.2f, 0}, {0.2f, 0, 0}, 1,
-               builder.add(mirror(glm::vec3(1.0f))));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, builder.add(diffuse(0.0f)));
+  builder.grid({-0.1f, -0.1f, 1.2f}, {0, 0.2f, 0}, {0.2f, 0, 0}, 1, builder.add(mirror(1.0f)));
   const Light spot = spot_light("spot", {0, 0, 1}, {0, 0, 1}, 1.0f, 1.1f);
   builder.add(spot);
   const double candela = 1 / (2 * pi * trace::SpotFalloff(spot).integral());
@@ -341,7 +333,7 @@ TEST_CASE("gathering: no caustic shines through a screen that stands on the floo
 
 TEST_CASE("gathering: surroundings are direct light, and seen once") {
   SceneBuilder builder;
-  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, builder.add(diffuse(glm::vec3(0.5f))));
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 2, builder.add(diffuse(0.5f)));
   builder.add_surroundings("sky", EnvironmentMap("sky", 1, 1, {glm::vec3(1.0f)}));
   const Scene scene = builder.build();
   GatheringScene open(scene, looked_up(50'000));
@@ -383,8 +375,8 @@ TEST_CASE("gathering: the stated error is the scatter of other random numbers") 
 
 TEST_CASE("gathering: the same bits in any order of points and on any number of threads") {
   Scene scene = furnished_room(2);
-  scene.materials[1] = mirror(glm::vec3(0.9f));
-  scene.materials[2] = glossy(glm::vec3(0.2f), glm::vec3(0.4f), 0.2f);
+  scene.materials[1] = mirror(0.9f);
+  scene.materials[2] = glossy(0.2f, 0.4f, 0.2f);
   GatheringScene room(scene, looked_up(50'000));
   std::vector<Sensor> sensors = room_sensors(16);  // more than one run of rays
   sensors.resize(700);
@@ -421,7 +413,7 @@ TEST_CASE("gathering: the same bits in any order of points and on any number of 
 TEST_CASE("gathering: layers are the same whatever the powers") {
   Scene scene = furnished_room();
   scene.lights.pop_back();  // half of the looks at lamps go by power; at a single lamp all do
-  scene.materials[1] = mirror(glm::vec3(0.9f));
+  scene.materials[1] = mirror(0.9f);
   RenderParameters parameters = looked_up(50'000);
   parameters.photons.quota = PhotonQuota::equal;
   const std::vector<Sensor> sensors = room_sensors(3);
@@ -454,7 +446,7 @@ TEST_CASE("gathering: many lights, each in its layer, are what their group is") 
 }
 
 TEST_CASE("gathering: parameters out of range are refused") {
-  GatheringScene box(closed_box(diffuse(glm::vec3(0.5f))), looked_up(1'000));
+  GatheringScene box(closed_box(diffuse(0.5f)), looked_up(1'000));
   const auto refused = [&](const cache::IrradianceGatherParameters& parameters) {
     CHECK_THROWS_AS(box.gather(parameters), UsageError);
   };

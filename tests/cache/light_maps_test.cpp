@@ -3,15 +3,12 @@
 
 #include <tbb/global_control.h>
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
 
 #include "cache/node_sources.hpp"
 #include "photile/errors.hpp"
-#include "scene/coincident_faces.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -35,7 +32,7 @@ TEST_CASE("Light maps give back uniform light") {
 }
 
 TEST_CASE("Light maps give back light that varies linearly over a wall") {
-  const Scene room = closed_box(diffuse(glm::vec3(0.5f)), 3);
+  const Scene room = closed_box(diffuse(0.5f), 3);
   const RayScene rays(room);
   const auto light = [](const glm::vec3& p, std::uint32_t) { return 5.0f + p.x - 2 * p.y + p.z; };
   FormulaSource source(light);
@@ -51,7 +48,7 @@ TEST_CASE("Light maps give back light that varies linearly over a wall") {
 }
 
 TEST_CASE("Between nodes curved light is off by an eighth of its second difference") {
-  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f, 2));
+  const Scene floor = with_one_lamp(plate(diffuse(0.5f), 1.0f, 2));
   const RayScene rays(floor);
   // Second derivatives at most 36 each: so far is a chord of 4 cm from its arc, twice.
   const auto light = [](const glm::vec3& p, std::uint32_t) {
@@ -69,7 +66,7 @@ TEST_CASE("Between nodes curved light is off by an eighth of its second differen
 }
 
 TEST_CASE("Cells are split where light varies, down to the finest level") {
-  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 2.0f));
+  const Scene floor = with_one_lamp(plate(diffuse(0.5f), 2.0f));
   const RayScene rays(floor);
   FormulaSource source(shadow);
   cache::LightMaps maps(rays, quiet_parameters(), source);
@@ -117,7 +114,7 @@ TEST_CASE("What is read does not depend on what was looked at before, or on thre
 
 TEST_CASE("Neither side of a plate, nor a plate 1 mm below, leaks") {
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
   builder.grid({0, 0, 0.001f}, {1, 0, 0}, {0, 1, 0}, 3, white);
   builder.grid({0.3f, 0.3f, 0.001f}, {0.2f, 0, 0}, {0, 0.2f, 0}, 1, white);  // coincident
@@ -146,7 +143,7 @@ TEST_CASE("Neither side of a plate, nor a plate 1 mm below, leaks") {
 }
 
 TEST_CASE("A failing source leaves light maps as they were") {
-  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const Scene floor = with_one_lamp(plate(diffuse(0.5f), 1.0f));
   const RayScene rays(floor);
   const PrimaryHits hits = points_on(floor, 10);
   bool gone = true;
@@ -165,7 +162,7 @@ TEST_CASE("A failing source leaves light maps as they were") {
 }
 
 TEST_CASE("Light maps are taken in whole, and filled on as if they had never been away") {
-  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const Scene floor = with_one_lamp(plate(diffuse(0.5f), 1.0f));
   const RayScene rays(floor);
   const PrimaryHits hits = points_on(floor, 60);
   PrimaryHits some;
@@ -191,7 +188,7 @@ TEST_CASE("Light maps are taken in whole, and filled on as if they had never bee
 }
 
 TEST_CASE("What is forgotten is valued again to the same bits, and the rest stays") {
-  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const Scene floor = with_one_lamp(plate(diffuse(0.5f), 1.0f));
   const RayScene rays(floor);
   const PrimaryHits hits = points_on(floor, 60);
   FormulaSource source(shadow);
@@ -220,7 +217,7 @@ TEST_CASE("What is forgotten is valued again to the same bits, and the rest stay
 }
 
 TEST_CASE("Contents that do not fit the scene are refused") {
-  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const Scene floor = with_one_lamp(plate(diffuse(0.5f), 1.0f));
   const RayScene rays(floor);
   FormulaSource source(shadow);
   cache::LightMaps maps(rays, quiet_parameters(), source);
@@ -253,7 +250,7 @@ TEST_CASE("Contents that do not fit the scene are refused") {
 
 TEST_CASE("Light maps refuse what makes no lattice") {
   FormulaSource source(shadow);
-  const Scene floor = with_one_lamp(plate(diffuse(glm::vec3(0.5f)), 1.0f));
+  const Scene floor = with_one_lamp(plate(diffuse(0.5f), 1.0f));
   const RayScene rays(floor);
   for (const double spacing : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     CHECK_THROWS_AS(cache::LightMaps(rays, quiet_parameters(spacing), source), UsageError);
@@ -266,7 +263,7 @@ TEST_CASE("Light maps refuse what makes no lattice") {
 TEST_CASE(
     "hits read from the coarsest nodes alone have the same light whoever looked closer before") {
   SceneBuilder builder;
-  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, builder.add(diffuse(0.5f)));
   const Scene scene = with_one_lamp(std::move(builder).build());
   const RayScene rays(scene);
   const PrimaryHits hits = points_on(scene, 20);
@@ -309,7 +306,7 @@ class NumberedPoints : public FormulaSource {
 
 TEST_CASE("light maps: points keep their numbers where coarse levels are skipped") {
   SceneBuilder builder;
-  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 0.7f, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
+  builder.grid({0, 0, 0}, {1, 0, 0}, {0, 0.7f, 0}, 1, builder.add(diffuse(0.5f)));
   const Scene scene = with_one_lamp(builder.build());
   const RayScene rays(scene);
   const PrimaryHits hits = points_on(scene, 40);

@@ -75,6 +75,25 @@ inline PrimaryHits points_on(const Scene& scene, int count) {
   return hits;
 }
 
+/// Those hits for which `holds` of their position and oriented face.
+template <class Predicate>
+PrimaryHits hits_where(const PrimaryHits& hits, Predicate&& holds) {
+  PrimaryHits found;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (holds(hits.position[i], hits.oriented_face[i])) {
+      add_hit(found, hits.position[i], hits.oriented_face[i]);
+    }
+  }
+  return found;
+}
+
+/// Whether a face is a front of one of so many triangles.
+inline auto fronts_of(const Scene& scene, std::uint32_t triangles = none) {
+  return [&scene, triangles](const glm::vec3&, std::uint32_t face) {
+    return triangle_of(face) < triangles && side_of(face) == scene.front_side[triangle_of(face)];
+  };
+}
+
 /// What light maps say of a point; all of its nodes are valued.
 inline float read(const cache::LightMaps& maps, const glm::vec3& position,
                   std::uint32_t oriented_face) {

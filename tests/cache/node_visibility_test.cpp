@@ -2,11 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "cache/light_maps.hpp"
 #include "cache/node_sources.hpp"
 #include "photile/defaults.hpp"
-#include "photile/scene_builder.hpp"
-#include "test_scenes.hpp"
 #include "trace/ray_query.hpp"
 
 namespace photile::test {
@@ -17,7 +14,7 @@ constexpr float between_from = 0.5015f, between_to = 0.5035f;  ///< metres, alon
 /// Two boxes on a floor of 1 m, with a slot between them that no node of 5 mm lies in.
 Scene boxes_on_floor() {
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
   builder.box({0.313f, 0.313f, 0.0f}, {between_from, 0.687f, 0.2f}, white, false);
   builder.box({between_to, 0.313f, 0.0f}, {0.687f, 0.687f, 0.2f}, white, false);
@@ -34,7 +31,7 @@ float open_floor(const glm::vec3& p, std::uint32_t) {
 /// Two plates that lie 2 mm above the floor, 8 mm apart: in the slits below them it is dark.
 Scene plates_above_floor() {
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
   builder.box({0.2f, 0.2f, 0.002f}, {0.4963f, 0.8f, 0.02f}, white, true);
   builder.box({0.5043f, 0.2f, 0.002f}, {0.8f, 0.8f, 0.02f}, white, true);
@@ -155,7 +152,7 @@ TEST_CASE("all nodes of open floor and of a bowl are seen") {
   const trace::FlushDenormals flush_denormals;
   // A strip that turns by 15 degrees over 20 cm, hollow above and vaulted below.
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   constexpr int steps = 30;
   const auto place = [](int i) {
     const double angle = glm::radians(15.0) * (static_cast<double>(i) / steps - 0.5);

@@ -1,13 +1,8 @@
 // Smooth shading from nodes that gather, beside closed forms and paths.
 #include <algorithm>
-#include <array>
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <cstdint>
-#include <numbers>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "cache/light_maps.hpp"
 #include "light/light_at_points.hpp"
@@ -16,11 +11,9 @@
 #include "photile/photons.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
-#include "photile/sensors.hpp"
 #include "smooth_meshes.hpp"
 #include "suns.hpp"
 #include "test_device.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -43,10 +36,10 @@ RenderParameters good() {
 /// The mesh in a room of 4 x 4 x 3 m with a panel under its ceiling and a small lamp on one side.
 Scene in_room(const SmoothMesh& mesh, bool with_normals = true, int lamps = 2) {
   SceneBuilder builder;
-  const std::uint32_t wall = builder.add(diffuse(glm::vec3(0.6f)));
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t wall = builder.add(diffuse(0.6f));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   builder.box({-2, -2, 0}, {2, 2, 3}, wall, true);
-  mesh.add_to(builder, builder.add(diffuse(glm::vec3(albedo))), with_normals);
+  mesh.add_to(builder, builder.add(diffuse(albedo)), with_normals);
   const std::uint32_t panel = builder.add(area_light("panel", 3000.0));
   builder.grid({-1.3f, -0.5f, 2.9f}, {0, 0.6f, 0}, {0.6f, 0, 0}, 1, black, panel);
   if (lamps > 1) {
@@ -121,7 +114,7 @@ TEST_CASE(
   const int suns = GENERATE(1, 2, 10);
   const bool are_drawn = suns > 8;
   SceneBuilder builder;
-  sphere.add_to(builder, builder.add(diffuse(glm::vec3(albedo))));
+  sphere.add_to(builder, builder.add(diffuse(albedo)));
   std::vector<glm::dvec3> to_sun;
   std::vector<double> lux;
   for (int i = 0; i < suns; ++i) {
@@ -189,10 +182,10 @@ TEST_CASE("Nodes show a floor with a normal map as paths do") {
 TEST_CASE("Many lights are shaded as smoothly") {
   const std::vector<Sensor> sensors = some_of(sphere, 5);
   SceneBuilder builder;
-  const std::uint32_t wall = builder.add(diffuse(glm::vec3(0.6f)));
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t wall = builder.add(diffuse(0.6f));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   builder.box({-2, -2, 0}, {2, 2, 3}, wall, true);
-  sphere.add_to(builder, builder.add(diffuse(glm::vec3(albedo))));
+  sphere.add_to(builder, builder.add(diffuse(albedo)));
   for (int i = 0; i < 10; ++i) {  // the panel of in_room in strips
     const std::uint32_t strip = builder.add(area_light("strip " + std::to_string(i), 300.0));
     builder.grid({-1.3f + 0.06f * static_cast<float>(i), -0.5f, 2.9f}, {0, 0.6f, 0}, {0.06f, 0, 0},

@@ -1,9 +1,7 @@
 // Photons without a scene, against brute force in double precision.
 #include "photile/photon_cloud.hpp"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
 #include <random>

@@ -3,6 +3,8 @@
 #include <utility>
 #include <vector>
 
+#include "weather_text.hpp"
+
 namespace photile::test {
 
 std::string box_mtl() {
@@ -31,16 +33,26 @@ std::string open_box_obj() {
   return obj;
 }
 
+std::string write_open_box(const FileFolder& folder) {
+  folder.write("box.mtl", box_mtl());
+  return folder.write("open.obj", open_box_obj());
+}
+
+std::string write_weather(const FileFolder& folder) {
+  const auto by_day = [](int lux) {
+    return [lux](int, int, int hour) { return hour > 8 && hour < 17 ? lux : 0; };
+  };
+  return folder.write("year.epw", weather_text(by_day(400), by_day(150)));
+}
+
 std::string write_box(const FileFolder& folder) {
   folder.write("box.mtl", box_mtl());
   return folder.write("box.obj", box_obj());
 }
 
 Run small_render(const FileFolder& folder) {
-  Run run;
-  run.arguments = {"render", write_box(folder), "-o",    folder / "out.png", "--photons",
-                   "20k",    "--size",          "16x12", "--quality",        "draft"};
-  return run;
+  return {.arguments = {"render", write_box(folder), "-o", folder / "out.png", "--photons", "20k",
+                        "--size", "16x12", "--quality", "draft"}};
 }
 
 std::string filled(std::string command, const FileFolder& folder) {

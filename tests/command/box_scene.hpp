@@ -15,8 +15,12 @@ std::string write_box(const FileFolder& folder);
 /// The text of the box's OBJ, to be spoilt by a test; it names box.mtl.
 std::string box_obj();
 
-/// The box with a wall left out.
+/// The box with a wall left out, and as a file.
 std::string open_box_obj();
+std::string write_open_box(const FileFolder& folder);
+
+/// The weather of a year in which every day is alike: light from nine to five.
+std::string write_weather(const FileFolder& folder);
 
 /// The text of box.mtl.
 std::string box_mtl();

@@ -4,13 +4,9 @@
 #include <poll.h>
 #include <pty.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
-#include <catch2/catch.hpp>
-#include <chrono>
 #include <cstdlib>
-#include <sstream>
 #include <thread>
 
 #include "held_to_permissions.hpp"
@@ -142,9 +138,7 @@ Outcome run_photile(const Run& run) {
 }
 
 Outcome run_photile(const std::vector<std::string>& arguments) {
-  Run run;
-  run.arguments = arguments;
-  return run_photile(run);
+  return run_photile(Run{.arguments = arguments});
 }
 
 Outcome succeed(const Run& run) {
@@ -155,16 +149,12 @@ Outcome succeed(const Run& run) {
 }
 
 Outcome succeed(const std::vector<std::string>& arguments) {
-  Run run;
-  run.arguments = arguments;
-  return succeed(run);
+  return succeed(Run{.arguments = arguments});
 }
 
 pid_t start_photile(const std::vector<std::string>& arguments) {
-  Run run;
-  run.arguments = arguments;
   const Channel nowhere{-1, open("/dev/null", O_WRONLY | O_CLOEXEC)};
-  return start(run, nowhere, nowhere);
+  return start({.arguments = arguments}, nowhere, nowhere);
 }
 
 std::string only_error(const Outcome& outcome, int exit_code) {

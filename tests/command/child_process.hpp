@@ -41,13 +41,13 @@ std::vector<std::string> typed(const Parts&... parts) {
 std::string command();
 
 struct Run {
-  std::vector<std::string> arguments;
-  std::map<std::string, std::string> environment;  ///< on top of the test's own
-  bool terminal = false;                           ///< standard error is a terminal, 100 columns
-  std::string standard_output;                     ///< a file to write it to; "" = keep it
-  bool held_to_permissions = false;                ///< root, too, reads no file that denies it
-  std::map<decltype(RLIMIT_AS), std::uint64_t> limits;  ///< of setrlimit
-  std::string signal_when;  ///< once standard error holds this text, `signal` is sent
+  std::vector<std::string> arguments{};
+  std::map<std::string, std::string> environment{};  ///< on top of the test's own
+  bool terminal = false;                             ///< standard error is a terminal, 100 columns
+  std::string standard_output{};                     ///< a file to write it to; "" = keep it
+  bool held_to_permissions = false;                  ///< root, too, reads no file that denies it
+  std::map<decltype(RLIMIT_AS), std::uint64_t> limits{};  ///< of setrlimit
+  std::string signal_when{};  ///< once standard error holds this text, `signal` is sent
   std::chrono::milliseconds signal_delay{0};  ///< after that text, or after the start without one
   int signal = SIGINT;
 };

@@ -9,47 +9,40 @@
 #include <sstream>
 
 #include "box_scene.hpp"
-#include "child_process.hpp"
 #include "command/daylight_results.hpp"
-#include "file_folder.hpp"
 #include "report/daylight_tables.hpp"
-#include "weather_text.hpp"
 
 namespace photile::test {
 namespace {
 
 using Catch::Contains;
 
-std::string write_weather(const FileFolder& folder) {
-  const auto by_day = [](int lux) {
-    return [lux](int, int, int hour) { return hour > 8 && hour < 17 ? lux : 0; };
-  };
-  return folder.write("year.epw", weather_text(by_day(400), by_day(150)));
-}
-
-/// The box with a wall left out.
-std::string write_open_box(const FileFolder& folder) {
-  folder.write("box.mtl", box_mtl());
-  return folder.write("open.obj", open_box_obj());
-}
-
-std::vector<std::string> quick(const std::string& command, const std::string& scene,
-                               std::vector<std::string> more) {
+/// Over a grid, by few photons and rays: seconds, not accuracy.
+template <class... Parts>
+std::vector<std::string> quick(const char* command, const std::string& scene,
+                               const Parts&... more) {
   return typed(command, scene,
-               "--photons 20k --rays 64 --repeats 2 --quiet --plane floor+0.75 --wall-band 0.2",
-               more);
+               "--photons 20k --rays 64 --repeats 2 --plane floor+0.75 --wall-band 0.2 "
+               "--inside 0,0,0",
+               more...);
+}
+
+/// A quick year of an even sky of 145 patches.
+template <class... Parts>
+std::vector<std::string> year_of(const FileFolder& folder, const std::string& scene,
+                                 const Parts&... more) {
+  return quick("daylight", scene, "--quiet --patches 145 --weather", write_weather(folder),
+               more...);
 }
 
 }  // namespace
 
 TEST_CASE("a year of daylight fills its files") {
   const FileFolder folder;
-  const std::string scene = write_open_box(folder), weather = write_weather(folder);
   const Outcome outcome =
-      succeed(quick("daylight", scene,
-                    {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--lamps-to",
-                     "500", "-o", folder / "a.CSV", "-o", folder / "a.json", "-o", folder / "a.svg",
-                     "-o", folder / "a.html", "--honeybee", folder / "bee"}));
+      succeed(year_of(folder, write_open_box(folder), "--lamps-to 500 -o", folder / "a.CSV", "-o",
+                      folder / "a.json", "-o", folder / "a.svg", "-o", folder / "a.html",
+                      "--honeybee", folder / "bee"));
   CHECK_THAT(folder.read("a-1.svg"), Contains("working plane: DA 300 lux"));
   CHECK_THAT(folder.read("a-2.svg"), Contains("working plane: UDI 100 to 3000 lux"));
   CHECK_THAT(folder.read("a.html"),
@@ -57,7 +50,7 @@ TEST_CASE("a year of daylight fills its files") {
                  Contains("DA 300 lux") && Contains("year.epw") && !Contains("Key figures"));
   CHECK_THAT(outcome.output, Contains("sDA 300") && Contains("ASE") && Contains("UDI") &&
                                  Contains("EN 17037") && Contains("kWh"));
-  const auto record = nlohmann::json::parse(folder.read("a.json"));
+  const auto record = folder.json("a.json");
   const auto& grid = record.at(0);
   const std::size_t points = grid["points"];
   REQUIRE(grid["sensors"].size() == points);
@@ -93,8 +86,7 @@ TEST_CASE("a year of daylight fills its files") {
 TEST_CASE("the window's year is that of photile daylight, and is refined") {
   const FileFolder folder;
   const std::string scene = write_open_box(folder), weather = write_weather(folder);
-  const Outcome once =
-      succeed(quick("daylight", scene, {"--inside", "0,0,0", "--weather", weather}));
+  const Outcome once = succeed(quick("daylight", scene, "--quiet --weather", weather));
   app::DaylightOptions options;
   options.render.scene = scene;
   options.render.load.situation.weather = weather;
@@ -118,14 +110,11 @@ TEST_CASE("the window's year is that of photile daylight, and is refined") {
 
 TEST_CASE("in a given time figures get standard errors, and sDA a verdict") {
   const FileFolder folder;
-  const std::string scene = write_open_box(folder), weather = write_weather(folder);
-  const Outcome outcome =
-      succeed(quick("daylight", scene,
-                    {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--for", "1ms",
-                     "--lux", "100000", "-o", folder / "a.json"}));
+  const Outcome outcome = succeed(
+      year_of(folder, write_open_box(folder), "--for 1ms --lux 100000 -o", folder / "a.json"));
   CHECK_THAT(outcome.output, Contains("0.0 +-0% of the points: misses 55% (certain)") &&
                                  Contains("% below 100 lux, ") && !Contains("warning"));
-  const auto grid = nlohmann::json::parse(folder.read("a.json")).at(0);
+  const auto grid = folder.json("a.json").at(0);
   CHECK(grid["standard_errors"]["mean_lux"] > 0);
   CHECK(grid["standard_errors"]["mean_lux"] < 0.1 * grid["mean_lux"].get<double>());
   CHECK(grid["standard_errors"]["sDA"] == 0);
@@ -134,21 +123,17 @@ TEST_CASE("in a given time figures get standard errors, and sDA a verdict") {
 
 TEST_CASE("lamps take the watts that their files state, others those of an efficacy") {
   const FileFolder folder;
-  const std::string scene = write_open_box(folder), weather = write_weather(folder);
+  const std::string scene = write_open_box(folder);
   folder.write("spot.ies",
                "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0.1 0.1 0\n1 1 25\n"
                "0 45 90\n0\n1000 707.107 0\n");
   folder.write("lamps.json", R"({"name": "new", "file": "spot.ies", "position": [0, 0.9, 0]})");
   const auto watts = [&](const std::string& efficacy) {
-    succeed(quick("daylight", scene,
-                  {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--lamps-to",
-                   "500", "--lamp-efficacy", efficacy, "--luminaires", folder / "lamps.json", "-o",
-                   folder / "a.json"}));
+    succeed(year_of(folder, scene, "--lamps-to 500 --lamp-efficacy", efficacy, "--luminaires",
+                    folder / "lamps.json", "-o", folder / "a.json"));
     std::map<std::string, double> found;
-    const auto record = nlohmann::json::parse(folder.read("a.json"));
-    for (const auto& lamp : record.at(0).at("lamps")) {
-      found[lamp["name"]] = lamp["watts"];
-    }
+    const auto record = folder.json("a.json");
+    for (const auto& lamp : record.at(0).at("lamps")) found[lamp["name"]] = lamp["watts"];
     return found;
   };
   auto some = watts("50"), fewer = watts("100");
@@ -160,15 +145,13 @@ TEST_CASE("lamps take the watts that their files state, others those of an effic
 
 TEST_CASE("blinds close by the hour, as a scene of their own says") {
   const FileFolder folder;
-  const std::string scene = write_open_box(folder), weather = write_weather(folder);
+  const std::string scene = write_open_box(folder);
   folder.write("closed.obj", box_obj());
   const Outcome outcome =
-      succeed(quick("daylight", scene,
-                    {"--inside", "0,0,0", "--weather", weather, "--patches", "145", "--blinds",
-                     folder / "closed.obj", "--days", "mon-fri", "-o", folder / "a.csv", "-o",
-                     folder / "a.json", "--honeybee", folder / "bee"}));
+      succeed(year_of(folder, scene, "--blinds", folder / "closed.obj", "--days mon-fri -o",
+                      folder / "a.csv", "-o", folder / "a.json", "--honeybee", folder / "bee"));
   CHECK_THAT(outcome.output, Contains("blinds closed"));
-  const auto grid = nlohmann::json::parse(folder.read("a.json")).at(0);
+  const auto grid = folder.json("a.json").at(0);
   CHECK(grid["occupied_hours"] == 2600);
   const auto& states = grid["blinds"]["states"];
   REQUIRE(states.size() == 2);
@@ -182,7 +165,7 @@ TEST_CASE("blinds close by the hour, as a scene of their own says") {
   CHECK(closed == grid["blinds"]["closed_hours"]);
   CHECK_THAT(folder.read("a.csv"),
              Contains(",blinds,ground_reflectance\n") && Contains(",closed,0.2\n"));
-  CHECK(nlohmann::json::parse(folder.read("bee/states_schedule.json"))["blinds"]["schedule"] ==
+  CHECK(folder.json("bee/states_schedule.json")["blinds"]["schedule"] ==
         grid["blinds"]["state_of_hour"]);
   CHECK(!folder.read("bee/blinds/1_blinds/direct/working_plane.npy").empty());
 }
@@ -191,25 +174,19 @@ TEST_CASE("a room that no sky shines into is warned of") {
   const FileFolder folder;
   folder.write("box.mtl", box_mtl());
   const std::string closed = folder.write("closed.obj", box_obj());
-  std::vector<std::string> arguments =
-      quick("daylight", closed, {"--inside", "0,0,0", "--weather", write_weather(folder)});
-  std::erase(arguments, "--quiet");
-  const Outcome year = succeed(arguments);
+  const std::string weather = write_weather(folder);
+  const Outcome year = succeed(quick("daylight", closed, "--weather", weather));
   CHECK_THAT(year.errors, Contains("no skylight") && Contains("glass"));
   // Without daylight lamps stay on in every hour, here at a share of their power over one point.
-  arguments = quick("daylight", closed,
-                    {"--inside", "0,0,0", "--weather", write_weather(folder), "--lamps-to", "1e-3",
-                     "--spacing", "9", "-o", folder / "lamps.json"});
-  succeed(arguments);
-  const auto grid = nlohmann::json::parse(folder.read("lamps.json")).at(0);
+  succeed(quick("daylight", closed, "--quiet --lamps-to 1e-3 --spacing 9 --weather", weather, "-o",
+                folder / "lamps.json"));
+  const auto grid = folder.json("lamps.json").at(0);
   REQUIRE(grid["points"] == 1);
   for (const auto& lamp : grid["lamps"]) {
     CHECK(lamp["kilowatt_hours"] > 0);
     CHECK(lamp["kilowatt_hours"] < 0.5 * lamp["undimmed_kilowatt_hours"].get<double>());
   }
-  arguments = quick("measure", closed, {"--inside", "0,0,0", "--daylight-factor"});
-  std::erase(arguments, "--quiet");
-  const Outcome factors = succeed(arguments);
+  const Outcome factors = succeed(quick("measure", closed, "--daylight-factor"));
   CHECK_THAT(factors.errors, Contains("no skylight") && Contains("glass"));
   // The same as lux, as a picture, at eyes and on a page.
   const auto errors_of = [&](std::vector<std::string> words) {
@@ -218,8 +195,7 @@ TEST_CASE("a room that no sky shines into is warned of") {
   };
   const std::string eyes = folder.write("eyes.pts", "0 0 0.5 0 0 -1\n");
   const std::string told = "no skylight reaches any ";
-  CHECK_THAT(errors_of(typed("measure", closed, "--inside 0,0,0 --plane floor+0.75 --wall-band 0.2",
-                             "--photons 20k --rays 64 --repeats 2")),
+  CHECK_THAT(errors_of(quick("measure", closed)),
              Contains(told + "point") && Contains("has any light"));
   CHECK_THAT(errors_of(typed("render", closed, "--quality draft --photons 20k --size 16x12 -o",
                              folder / "a.exr")),
@@ -242,14 +218,13 @@ TEST_CASE("next to no light of the sky is told of with how much it is") {
 TEST_CASE("daylight factors are per cent of the sky's lux") {
   const FileFolder folder;
   const std::string scene = write_open_box(folder);
-  const auto run = [&](std::vector<std::string> more) {
-    more.insert(more.end(), {"--inside", "0,0,0", "-o", folder / "df.json"});
-    succeed(quick("measure", scene, std::move(more)));
-    return nlohmann::json::parse(folder.read("df.json"));
+  const auto run = [&](const char* more) {
+    succeed(quick("measure", scene, "--quiet", more, "-o", folder / "df.json"));
+    return folder.json("df.json");
   };
-  const auto factors = run({"--daylight-factor"});
+  const auto factors = run("--daylight-factor");
   CHECK(factors["unit"] == "DF %");
-  const auto lux = run({"--sky", "overcast=5000"});
+  const auto lux = run("--sky overcast=5000");
   const auto& lights = lux["grids"][0]["lights"];
   const double sky = lights["sky"]["Em"]["value"], ground = lights["ground"]["Em"]["value"];
   CHECK(factors["grids"][0]["statistics"]["Em"]["value"].get<double>() ==
@@ -266,7 +241,7 @@ TEST_CASE("the daylight factor of a wall in the open has the sky and the ground 
     const Outcome outcome = succeed(
         typed("measure", scene, "--daylight-factor --rays 20k --repeats 4 --integrator path",
               "--points", points, "-o", folder / "a.json", "-o", folder / "a.csv", more));
-    const auto record = nlohmann::json::parse(folder.read("a.json"));
+    const auto record = folder.json("a.json");
     std::vector<double> values;
     for (const auto& sensor : record["grids"][0]["sensors"]) values.push_back(sensor["lux"]);
     return std::tuple{values, record, outcome.output};

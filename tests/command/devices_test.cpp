@@ -2,17 +2,12 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "box_scene.hpp"
-#include "child_process.hpp"
-#include "file_bytes.hpp"
-#include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "source_folder.hpp"
-#include "weather_text.hpp"
 
 namespace photile::test {
 namespace {
@@ -40,14 +35,15 @@ TEST_CASE("the list of devices has a line for each and marks the selected one wi
   CHECK(static_cast<std::size_t>(std::count(outcome.output.begin(), outcome.output.end(), '\n')) ==
         count + 1);
   CHECK_THAT(outcome.output, Contains("* 0:0"));
+  // The whole of which parts are chosen.
+  CHECK_THAT(succeed({"devices", "--device", "0:0/2"}).output, Contains("* 0:0 "));
 }
 
 TEST_CASE("after devices --compile the first picture of an interior compiles nothing", "[slow]") {
   const FileFolder folder;
   std::filesystem::create_directory(folder / "cache");
-  Run run;
-  run.environment["XDG_CACHE_HOME"] = folder / "cache";
-  run.arguments = {"devices", "--compile"};
+  Run run{.arguments = {"devices", "--compile"},
+          .environment = {{"XDG_CACHE_HOME", folder / "cache"}}};
   const Outcome compiled = succeed(run);
   CHECK_THAT(compiled.errors, Contains(" compiled, ") && !Contains(": 0 compiled"));
   const std::string room = source_folder() / "scenes/living-room/living-room.gltf";
@@ -59,43 +55,34 @@ TEST_CASE("after devices --compile the first picture of an interior compiles not
 
 TEST_CASE("two halves of a device render the file of the whole, and the record names both") {
   const FileFolder folder;
-  Run run;
-  run.arguments = {"render", write_box(folder), "-o",    folder / "whole.png", "--photons",
-                   "5k",     "--size",          "64x48", "--quality",          "draft"};
-  succeed(run);
-  run.arguments[3] = folder / "halves.png";
-  run.arguments.insert(run.arguments.end(), {"--stats", folder / "stats.json"});
-  run.environment["PHOTILE_DEVICE"] = "0:0/2";
-  const Outcome outcome = succeed(run);
+  const auto render = [&](const std::string& name) {
+    return typed("render", write_box(folder), "--photons 5k --size 64x48 --quality draft -o",
+                 folder / name, "--stats", folder / "stats.json");
+  };
+  succeed(render("whole.png"));
+  const Outcome outcome =
+      succeed({.arguments = render("halves.png"), .environment = {{"PHOTILE_DEVICE", "0:0/2"}}});
   CHECK(folder.read("halves.png") == folder.read("whole.png"));
   CHECK_THAT(outcome.errors, Contains("device: 0:0.0 ") && Contains("device: 0:0.1 ") &&
                                  Contains("share of 0:0.0") && Contains("share of 0:0.1"));
-  const auto devices = nlohmann::json::parse(folder.read("stats.json"))["devices"];
+  const auto devices = folder.json("stats.json")["devices"];
   REQUIRE(devices.size() == 2);
   CHECK(devices[0]["id"] == "0:0.0");
   CHECK(devices[1]["id"] == "0:0.1");
   CHECK(devices[0]["share"].get<double>() + devices[1]["share"].get<double>() == Approx(1));
 }
 
-TEST_CASE("the list of devices marks the whole of which parts are chosen") {
-  const Outcome outcome = succeed({"devices", "--device", "0:0/2"});
-  CHECK_THAT(outcome.output, Contains("* 0:0 "));
-}
-
 TEST_CASE("PHOTILE_DEVICE chooses the device where --device does not") {
-  Run run;
-  run.arguments = {"devices"};
-  run.environment["PHOTILE_DEVICE"] = "no-such-device";
+  Run run{.arguments = {"devices"}, .environment = {{"PHOTILE_DEVICE", "no-such-device"}}};
+  CHECK_THAT(last_error(run_photile(run), no_device), Contains("no-such-device"));
   run.arguments = {"devices", "--device", "0:0"};
   succeed(run);
 }
 
 TEST_CASE("the test of devices passes, and not with kernels that compute wrong areas", "[slow]") {
   const FileFolder folder;
-  Run run;
-  run.arguments = {"devices", "--test"};
-  const Outcome right = succeed(run);
-  CHECK_THAT(right.output, Contains("passed ("));
+  Run run{.arguments = {"devices", "--test"}};
+  CHECK_THAT(succeed(run).output, Contains("passed ("));
 
   const auto file = std::filesystem::path("surface/clipped_disc.clh");
   std::string text = bytes_of(source_folder() / "kernels" / file);
@@ -122,12 +109,9 @@ constexpr double rounding = 1e-5;
 /// Runs the command on a device of this type alone: where there is none, it fails.
 Outcome run_on(const std::string& type, const std::vector<std::string>& arguments,
                std::map<std::string, std::string> environment = {}) {
-  Run run;
-  run.arguments = arguments;
-  run.environment = std::move(environment);
-  run.environment["PHOTILE_DEVICE"] = type;
-  if (type == "gpu") run.environment["OPENCL_LAYERS"] = PHOTILE_GPU_LAYER;
-  return succeed(run);
+  environment["PHOTILE_DEVICE"] = type;
+  if (type == "gpu") environment["OPENCL_LAYERS"] = PHOTILE_GPU_LAYER;
+  return succeed({.arguments = arguments, .environment = std::move(environment)});
 }
 
 /// Runs the command on a CPU and as a GPU, each in a folder of its own that holds the box.
@@ -174,8 +158,7 @@ void check_same_values(const nlohmann::json& cpu, const nlohmann::json& gpu) {
 }
 
 void check_same_values(const OnBoth& folders, const std::string& name) {
-  check_same_values(nlohmann::json::parse(folders.cpu.read(name)),
-                    nlohmann::json::parse(folders.gpu.read(name)));
+  check_same_values(folders.cpu.json(name), folders.gpu.json(name));
 }
 
 /// Runs a command that would compile kernels for many minutes until its bar shows that some work is
@@ -183,14 +166,12 @@ void check_same_values(const OnBoth& folders, const std::string& name) {
 ///   share   of the work, as the bar shows it
 void check_begins(const std::vector<std::string>& arguments, const std::string& share) {
   const FileFolder cache;
-  Run run;
-  run.arguments = arguments;
-  run.environment = {{"PHOTILE_DEVICE", "gpu"},
-                     {"OPENCL_LAYERS", PHOTILE_GPU_LAYER},
-                     {"XDG_CACHE_HOME", cache.path}};
-  run.terminal = true;
-  run.signal_when = "]   " + share + "  ";
-  const Outcome outcome = run_photile(run);
+  const Outcome outcome = run_photile({.arguments = arguments,
+                                       .environment = {{"PHOTILE_DEVICE", "gpu"},
+                                                       {"OPENCL_LAYERS", PHOTILE_GPU_LAYER},
+                                                       {"XDG_CACHE_HOME", cache.path}},
+                                       .terminal = true,
+                                       .signal_when = "]   " + share + "  "});
   INFO(outcome.errors);
   CHECK(outcome.exit_code == 130);
 }
@@ -268,14 +249,9 @@ TEST_CASE("as a GPU, glare rates what it rates on a CPU", "[slow]") {
 
 TEST_CASE("as a GPU, daylight finds the year that it finds on a CPU", "[slow]") {
   const OnBoth folders([](const FileFolder& folder) {
-    const auto by_day = [](int lux) {
-      return [lux](int, int, int hour) { return hour > 8 && hour < 17 ? lux : 0; };
-    };
-    folder.write("box.mtl", box_mtl());
-    return typed("daylight", folder.write("open.obj", open_box_obj()),
+    return typed("daylight", write_open_box(folder),
                  "--inside 0,0,0 --plane floor+0.75 --wall-band 0.2 --weather",
-                 folder.write("year.epw", weather_text(by_day(400), by_day(150))),
-                 "--lamps-to 500 --patches 145 -o", folder / "year.json",
+                 write_weather(folder), "--lamps-to 500 --patches 145 -o", folder / "year.json",
                  "--photons 20k --rays 64 --repeats 2");
   });
   check_same_values(folders, "year.json");
@@ -298,7 +274,7 @@ TEST_CASE("as a GPU, bake writes the light maps of a CPU", "[slow]") {
     return std::vector<std::string>{
         "bake", write_box(folder), "-o", folder / "baked.gltf", "--photons", "50k"};
   });
-  const auto document = nlohmann::json::parse(folders.cpu.read("baked.gltf"));
+  const auto document = folders.cpu.json("baked.gltf");
   const auto& maps = document["scenes"][0]["extras"]["photile"]["light_maps"];
   REQUIRE(maps.size() == 2);
   for (const auto& map : maps) check_same_picture(folders, map["uri"].get<std::string>());

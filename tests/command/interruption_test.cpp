@@ -10,11 +10,8 @@
 #include <thread>
 
 #include "box_scene.hpp"
-#include "child_process.hpp"
 #include "command/processes.hpp"
 #include "command/terminal_progress.hpp"
-#include "file_bytes.hpp"
-#include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "skipped.hpp"
 
@@ -52,12 +49,11 @@ TEST_CASE("a signal during a render, or the making of a page, gives 130 and keep
 
 TEST_CASE("a picture that takes gigabytes is told before anything is traced") {
   const FileFolder folder;
-  Run run;
-  run.arguments = typed("render", write_box(folder), "-o", folder / "a.exr", "--photons 2G",
-                        "--size 16384x16384");
-  run.signal_when = "GB of memory";
-  run.signal = SIGTERM;
-  const Outcome outcome = run_photile(run);
+  const Outcome outcome =
+      run_photile({.arguments = typed("render", write_box(folder), "-o", folder / "a.exr",
+                                      "--photons 2G --size 16384x16384"),
+                   .signal_when = "GB of memory",
+                   .signal = SIGTERM});
   CHECK(last_error(outcome, 130) == "interrupted");
   const auto told = outcome.errors.find("16384 x 16384 pixels with 2 lights takes");
   CHECK(told != std::string::npos);
@@ -142,13 +138,12 @@ TEST_CASE("a signal while kernels are compiled gives 130 and one line", "[slow]"
   const std::string scene = write_box(folder);
   for (int turn = 0; turn < 8; ++turn) {
     const std::string cache = folder / "cache" + std::to_string(turn);
-    Run run;
-    run.arguments = typed("render", scene, "-o", folder / "out.png", "--photons 20M");
-    run.environment = {{"XDG_CACHE_HOME", cache}};
-    run.signal_when = "device: ";
-    run.signal_delay = std::chrono::milliseconds(120 * turn);
-    run.signal = turn % 2 == 0 ? SIGINT : SIGTERM;
-    const Outcome outcome = run_photile(run);
+    const Outcome outcome =
+        run_photile({.arguments = typed("render", scene, "-o", folder / "out.png", "--photons 20M"),
+                     .environment = {{"XDG_CACHE_HOME", cache}},
+                     .signal_when = "device: ",
+                     .signal_delay = std::chrono::milliseconds(120 * turn),
+                     .signal = turn % 2 == 0 ? SIGINT : SIGTERM});
     INFO(turn << ": " << outcome.errors);
     CHECK(last_error(outcome, 130) == "interrupted");
     std::filesystem::remove_all(cache);
@@ -170,9 +165,8 @@ TEST_CASE("a test of devices that is stopped leaves the verdict that is kept", "
     }
     return all;
   };
-  Run run;
-  run.arguments = typed("devices --test");
-  run.environment = {{"XDG_CACHE_HOME", folder / "cache"}};
+  Run run{.arguments = typed("devices --test"),
+          .environment = {{"XDG_CACHE_HOME", folder / "cache"}}};
   succeed(run);
   const std::string passed = verdicts();
   REQUIRE_THAT(passed, Contains("passed"));
@@ -276,8 +270,8 @@ TEST_CASE("on a disk of 64 KB, or 4 KB, every kind of output fails by its name a
   }));
   CAPTURE(command);
   const Outcome outcome = run_on_small_disk(folder, filled(command, folder), size);
-  CHECK_THAT(last_error(outcome, failure), Catch::Contains("disk/" + name));
-  CHECK_THAT(outcome.errors, !Catch::Contains("No such file"));
+  CHECK_THAT(last_error(outcome, failure), Contains("disk/" + name));
+  CHECK_THAT(outcome.errors, !Contains("No such file"));
   CHECK(outcome.output.empty());
 }
 
@@ -343,9 +337,7 @@ TEST_CASE("a quiet render prints nothing, on a terminal or not") {
 }
 
 TEST_CASE("an error is coloured on a terminal, but not where NO_COLOR is set") {
-  Run run;
-  run.arguments = {"info", "/nonexistent-folder/scene.obj"};
-  run.terminal = true;
+  Run run{.arguments = {"info", "/nonexistent-folder/scene.obj"}, .terminal = true};
   CHECK_THAT(run_photile(run).errors, Contains("\033[1;31merror:"));
   run.environment.emplace("NO_COLOR", "1");
   CHECK_THAT(run_photile(run).errors, !Contains("\033"));

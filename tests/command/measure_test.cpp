@@ -7,8 +7,6 @@
 #include <sstream>
 
 #include "box_scene.hpp"
-#include "child_process.hpp"
-#include "file_folder.hpp"
 
 namespace photile::test {
 namespace {
@@ -16,8 +14,9 @@ namespace {
 using Catch::Contains;
 
 /// Few photons and rays: seconds, not accuracy.
-std::vector<std::string> measure(const std::string& scene, std::vector<std::string> more) {
-  return typed("measure", scene, "--photons 20k --rays 64 --repeats 3 --quiet", more);
+template <class... Parts>
+std::vector<std::string> measure(const std::string& scene, const Parts&... more) {
+  return typed("measure", scene, "--photons 20k --rays 64 --repeats 3 --quiet", more...);
 }
 
 double ratio_of(const std::string& a, const std::string& b) {
@@ -30,13 +29,13 @@ double ratio_of(const std::string& a, const std::string& b) {
 
 TEST_CASE("measure writes the same values to all of its files") {
   const FileFolder folder;
-  const Outcome outcome = succeed(measure(
-      write_box(folder), {"--plane", "floor+0.75", "--wall-band", "0.2", "-o", folder / "a.csv",
-                          "-o", folder / "a.json", "-o", folder / "a.svg", "-o", folder / "a.html",
-                          "--honeybee", folder / "bee", "--pal", "viridis", "-s", "auto"}));
+  const Outcome outcome =
+      succeed(measure(write_box(folder), "--plane floor+0.75 --wall-band 0.2 -o", folder / "a.csv",
+                      "-o", folder / "a.json", "-o", folder / "a.svg", "-o", folder / "a.html",
+                      "--honeybee", folder / "bee", "--pal viridis -s auto"));
   CHECK_THAT(outcome.output, Contains("working plane") && Contains("Uo") && Contains("left"));
 
-  const auto record = nlohmann::json::parse(folder.read("a.json"));
+  const auto record = folder.json("a.json");
   CHECK(record["unit"] == "lux");
   CHECK(record["repeats"] == 3);
   const auto& grid = record["grids"][0];
@@ -82,9 +81,9 @@ TEST_CASE("a report shows the moods of a picture, and is printed as PDF") {
                R"({"photile_moods": 1, "moods": {"dusk": {"left": {"power": 1, "unit": "W"}}}})");
   succeed(typed("render", scene, "-o", folder / "box.exr",
                 "--size 16x12 --quality draft --photons 2k -k 20 --quiet"));
-  succeed(measure(scene, {"--plane", "floor+0.75", "--wall-band", "0.2", "-o", folder / "a.html",
-                          "-o", folder / "a.pdf", "--picture", folder / "box.exr", "--moods",
-                          folder / "moods.json"}));
+  succeed(measure(scene, "--plane floor+0.75 --wall-band 0.2 -o", folder / "a.html", "-o",
+                  folder / "a.pdf", "--picture", folder / "box.exr", "--moods",
+                  folder / "moods.json"));
   CHECK_THAT(folder.read("a.html"), Contains("data:image/png;base64,iVBORw0KGgo") &&
                                         Contains("<figcaption>as rendered</figcaption>") &&
                                         Contains("<figcaption>dusk</figcaption>"));
@@ -103,7 +102,7 @@ TEST_CASE("measure tells what is seldom meant, with --quiet, too") {
       "v -0.2 0.98 -0.2\nv 0.2 0.98 -0.2\nv 0.2 0.98 0.2\nv -0.2 0.98 0.2\n"
       "o spark\nusemtl dim\nf 21 22 23 24\n";
   const Outcome told =
-      succeed(measure(folder.write("box.obj", box), {"--plane", "floor+0.75", "--spacing", "0.5"}));
+      succeed(measure(folder.write("box.obj", box), "--plane floor+0.75 --spacing 0.5"));
   CHECK_THAT(
       told.errors,
       Contains("warning: 1 material on 12 triangles reflect 95% of light and more, 'wall' 98%"));
@@ -114,8 +113,7 @@ TEST_CASE("measure tells what is seldom meant, with --quiet, too") {
 
   // A sound room passes in silence.
   const FileFolder other;
-  const Outcome sound =
-      succeed(measure(write_box(other), {"--plane", "floor+0.75", "--spacing", "0.5"}));
+  const Outcome sound = succeed(measure(write_box(other), "--plane floor+0.75 --spacing 0.5"));
   CHECK_THAT(sound.errors, !Contains("warning"));
 }
 
@@ -124,14 +122,12 @@ TEST_CASE("a report's picture of other reflectances than are measured is told") 
   const std::string scene = write_box(folder);
   succeed(typed("render", scene, "--photons 5k --size 16x12 --samples 1 --quiet -o",
                 folder / "as_is.exr"));
-  const auto report = [&](const std::vector<std::string>& more) {
-    const std::vector<std::string> report_of{
-        "--plane", "floor+0.75",      "--spacing", "0.5",
-        "-o",      folder / "a.html", "--picture", folder / "as_is.exr"};
-    return succeed(measure(scene, typed(report_of, more)));
+  const auto report = [&](const char* more) {
+    return succeed(measure(scene, "--plane floor+0.75 --spacing 0.5 -o", folder / "a.html",
+                           "--picture", folder / "as_is.exr", more));
   };
-  CHECK_THAT(report({}).errors, !Contains("shows other"));
-  CHECK_THAT(report({"--reflectance", "wall=0.3"}).errors,
+  CHECK_THAT(report("").errors, !Contains("shows other"));
+  CHECK_THAT(report("--reflectance wall=0.3").errors,
              Contains("warning: ") && Contains("as_is.exr shows other surfaces or reflectances"));
 }
 
@@ -142,11 +138,9 @@ TEST_CASE("points of Radiance are measured in their order, with paths or photons
   std::vector<std::string> files;
   for (const std::string integrator : {"photon-map", "path"}) {
     files.push_back(folder / (integrator + ".json"));
-    std::vector<std::string> arguments{"measure", scene,          "--points", points, "--rays",
-                                       "2k",      "--integrator", integrator, "-o",   files.back()};
-    if (integrator == "photon-map") arguments.insert(arguments.end(), {"--photons", "200k"});
-    succeed(arguments);
-    const auto grid = nlohmann::json::parse(folder.read(integrator + ".json"))["grids"][0];
+    succeed(typed("measure", scene, "--points", points, "--rays 2k --integrator", integrator, "-o",
+                  files.back(), integrator == "photon-map" ? "--photons 200k" : ""));
+    const auto grid = folder.json(integrator + ".json")["grids"][0];
     CHECK(grid["name"] == "two");
     CHECK(grid["sensors"][0]["lux"].get<double>() > 2 * grid["sensors"][1]["lux"].get<double>());
   }
@@ -157,31 +151,29 @@ TEST_CASE("points of Radiance are measured in their order, with paths or photons
 TEST_CASE("the maintenance factor and --light scale what is measured") {
   const FileFolder folder;
   const std::string scene = write_box(folder);
-  const auto run = [&](const std::string& name, std::vector<std::string> more) {
-    more.insert(more.end(), {"--plane", "floor+0.5", "-o", folder / name});
-    succeed(measure(scene, more));
-    return folder.read(name);
+  const auto run = [&](const char* more) {
+    succeed(measure(scene, "--plane floor+0.5 -o", folder / "a.json", more));
+    return folder.read("a.json");
   };
-  const std::string plain = run("plain.json", {});
-  CHECK(ratio_of(run("old.json", {"--maintenance", "0.8"}), plain) == Approx(0.8));
-  CHECK(ratio_of(run("parts.json", {"--maintenance", "LLMF=0.9,LMF=80%"}), plain) == Approx(0.72));
-  CHECK(ratio_of(run("same.json", {"--light", "left=x2", "--light", "right=x2"}), plain) ==
-        Approx(2).epsilon(1e-5));
-  CHECK(run("again.json", {}) == plain);
-  CHECK(run("threads.json", {"--threads", "1"}) == plain);
+  const std::string plain = run("");
+  CHECK(ratio_of(run("--maintenance 0.8"), plain) == Approx(0.8));
+  CHECK(ratio_of(run("--maintenance LLMF=0.9,LMF=80%"), plain) == Approx(0.72));
+  CHECK(ratio_of(run("--light left=x2 --light right=x2"), plain) == Approx(2).epsilon(1e-5));
+  CHECK(run("") == plain);
+  CHECK(run("--threads 1") == plain);
 }
 
 TEST_CASE("a target is judged in the table, the JSON and the report") {
   const FileFolder folder;
   const Outcome outcome =
       succeed(measure(write_box(folder),
-                      {"--plane", "floor+0.75", "--walls", "--ceiling", "--cylindrical-at",
-                       "floor+1.2", "--semi-cylindrical-at", "floor+1.2", "--target",
-                       "Em=1,Uo=0.999,Ewall=1", "-o", folder / "a.json", "-o", folder / "a.html"}));
+                      "--plane floor+0.75 --walls --ceiling --cylindrical-at floor+1.2 "
+                      "--semi-cylindrical-at floor+1.2 --target Em=1,Uo=0.999,Ewall=1 -o",
+                      folder / "a.json", "-o", folder / "a.html"));
   CHECK_THAT(outcome.output, Contains("working plane: Em") && Contains("at least 1: met") &&
                                  Contains("NOT MET") && Contains("east wall") &&
                                  Contains("semi-cylindrical to the west"));
-  const auto record = nlohmann::json::parse(folder.read("a.json"));
+  const auto record = folder.json("a.json");
   CHECK(record["target"]["judgements"][0]["met"] == true);
   CHECK(record["target"]["judgements"][1]["met"] == false);
   CHECK(record["grids"].size() == 1 + 4 + 1 + 1 + 4);
@@ -224,26 +216,11 @@ TEST_CASE("a report has the project, glare and a year beside its figures, and li
                     "sensors": [{"position": [0.25, 0, -0.5], "DA": 0.2, "UDI": {
                       "100 to 300": 0.1, "300 to 3000": 0.5}}]}])");
   folder.write("logo.png", "\x89PNG\r\n");
-  const Outcome outcome = succeed(measure(scene, {"--plane",
-                                                  "floor+0.75",
-                                                  "--wall-band",
-                                                  "0.2",
-                                                  "--target",
-                                                  "office-desk",
-                                                  "--project",
-                                                  "Office <1>",
-                                                  "--client",
-                                                  "C & Co",
-                                                  "--include",
-                                                  folder / "glare.json",
-                                                  "--include",
-                                                  folder / "year.json",
-                                                  "--logo",
-                                                  folder / "logo.png",
-                                                  "--maintenance",
-                                                  "LLMF=0.9,LMF=0.95",
-                                                  "-o",
-                                                  folder / "a.html"}));
+  const Outcome outcome = succeed(
+      measure(scene, "--plane floor+0.75 --wall-band 0.2 --target office-desk --project",
+              std::string("Office <1>"), "--client", std::string("C & Co"), "--include",
+              folder / "glare.json", "--include", folder / "year.json", "--logo",
+              folder / "logo.png", "--maintenance LLMF=0.9,LMF=0.95 -o", folder / "a.html"));
   CHECK_THAT(outcome.output, Contains("desk <2>: UGR 21.4, at most 19: NOT MET"));
   const std::string page = folder.read("a.html");
   CHECK_THAT(page, Contains("<dd>Office &lt;1&gt;</dd>") && Contains("C &amp; Co") &&
@@ -270,10 +247,9 @@ TEST_CASE("a report describes the luminaires, their energy and the room, in two 
                    [{"name": "new", "kilowatt_hours": 44}],
                    "EN 17037": {"target_lux": 310, "minimum_target_lux": 120}}])");
   const auto report = [&](const std::string& language, const std::string& ra) {
-    succeed(measure(
-        scene, {"--plane", "floor+0.75", "--wall-band", "0.2", "--inside", "0,0,0", "--luminaires",
-                folder / "lamps.json", "--include", folder / "year.json", "--language", language,
-                "--target", "Em=1,Ra=" + ra, "-o", folder / "a.html"}));
+    succeed(measure(scene, "--plane floor+0.75 --wall-band 0.2 --inside 0,0,0 --luminaires",
+                    folder / "lamps.json", "--include", folder / "year.json", "--language",
+                    language, "--target", "Em=1,Ra=" + ra, "-o", folder / "a.html"));
     return folder.read("a.html");
   };
   const std::string page = report("en", "80");
@@ -282,9 +258,9 @@ TEST_CASE("a report describes the luminaires, their energy and the room, in two 
   CHECK_THAT(page, Contains("90, by the luminaires&#39; data sheets") ||
                        Contains("90, by the luminaires' data sheets"));
   // The box is 2 x 2 m and 2 m high.
-  CHECK_THAT(page, Contains("<dd>2.00 m</dd>") && Contains("<h2>Room</h2>"));
-  CHECK_THAT(page, Contains("<dt>LENI (EN 15193)</dt>") && Contains("44 kWh / a"));
-  CHECK_THAT(page, Contains("W/m² / 100 lx") && Contains("counter(pages)"));
+  CHECK_THAT(page, Contains("<dd>2.00 m</dd>") && Contains("<h2>Room</h2>") &&
+                       Contains("<dt>LENI (EN 15193)</dt>") && Contains("44 kWh / a") &&
+                       Contains("W/m² / 100 lx") && Contains("counter(pages)"));
   CHECK_THAT(report("de", "95"), Contains("<html lang=\"de\">") && Contains("Leuchtenstückliste") &&
                                      Contains("erfüllt") && Contains("nicht erfüllt") &&
                                      Contains("Nutzebene") && !Contains("not met"));
@@ -302,8 +278,8 @@ TEST_CASE("a list of parts totals the power where every file states it") {
       {"name": "b", "file": "b.ies", "position": [0.3, 0.9, 0]}])");
   const auto total = [&](const std::string& watts) {
     write_spot("b", watts);
-    succeed(measure(scene, {"--plane", "floor+0.75", "--luminaires", folder / "lamps.json", "-o",
-                            folder / "a.html"}));
+    succeed(measure(scene, "--plane floor+0.75 --luminaires", folder / "lamps.json", "-o",
+                    folder / "a.html"));
     const std::string page = folder.read("a.html");
     const std::size_t at = page.find("together");
     REQUIRE(at != std::string::npos);
@@ -331,13 +307,11 @@ TEST_CASE("a scene that lies on its side is measured at the places of its file")
   const std::string lying = folder.write("lying.obj", turned);
   const std::string points = folder.write("a.pts", "0.3 -0.5 0.2 0 1 0\n0.1 0.2 0.4 1 0 0\n");
   const std::string same = folder.write("b.pts", "0.3 -0.2 -0.5 0 0 1\n0.1 -0.4 0.2 1 0 0\n");
-  const auto record = [&](const std::string& scene, const std::string& where,
-                          std::vector<std::string> more) {
-    more.insert(more.end(), {"--points", where, "-o", folder / "a.json"});
-    succeed(measure(scene, more));
-    return nlohmann::json::parse(folder.read("a.json"))["grids"][0]["sensors"];
+  const auto record = [&](const std::string& scene, const std::string& where, const char* more) {
+    succeed(measure(scene, more, "--points", where, "-o", folder / "a.json"));
+    return folder.json("a.json")["grids"][0]["sensors"];
   };
-  const auto expected = record(upright, points, {}), seen = record(lying, same, {"--set", "up=z"});
+  const auto expected = record(upright, points, ""), seen = record(lying, same, "--set up=z");
   REQUIRE(seen.size() == 2);
   CHECK(seen[0]["position"] == nlohmann::json({0.3, -0.2, -0.5}));
   for (std::size_t i = 0; i < 2; ++i) CHECK(seen[i]["lux"] == expected[i]["lux"]);  // to the bit
@@ -348,9 +322,8 @@ TEST_CASE("a point beyond the walls is blank in every file, and the others keep 
   const std::string points =
       folder.write("p.pts", "0 0 0 0 1 0\n9 0 0.1 0 1 0\n0.3 0 0.2 0 1 0\n-0.3 0.1 0.2 0 1 0\n");
   const std::string scene = write_box(folder);
-  const Outcome outcome =
-      succeed(measure(scene, {"--points", points, "-o", folder / "a.csv", "-o", folder / "a.json",
-                              "--honeybee", folder / "bee"}));
+  const Outcome outcome = succeed(measure(scene, "--points", points, "-o", folder / "a.csv", "-o",
+                                          folder / "a.json", "--honeybee", folder / "bee"));
   CHECK_THAT(outcome.output, Contains("p: 3 points, and 1 left out"));
   const Outcome told = succeed(typed("measure", scene, "--photons 5k --rays 16 --points", points));
   CHECK_THAT(told.errors, Contains("p: 1 of 4 points are left out: they lie inside a solid or"));
@@ -358,7 +331,7 @@ TEST_CASE("a point beyond the walls is blank in every file, and the others keep 
   const std::string res = folder.read("bee/p.res");
   CHECK(std::count(res.begin(), res.end(), '\n') == 4);
   CHECK_THAT(res, Contains("\nnan\n"));
-  const auto grid = nlohmann::json::parse(folder.read("a.json"))["grids"][0];
+  const auto grid = folder.json("a.json")["grids"][0];
   CHECK(grid["blank"][0]["before"] == 1);
   CHECK(grid["statistics"]["Emin"]["value"].get<double>() > 0);
 }
@@ -381,10 +354,10 @@ TEST_CASE("points in a hollow counter are left out of all figures, and the repor
   quad("v -0.2 -0.2 -0.2\nv 0.2 -0.2 -0.2\nv 0.2 -0.2 0.6\nv -0.2 -0.2 0.6\n");
   folder.write("box.mtl", box_mtl());
   const std::string scene = folder.write("box.obj", box);
-  const Outcome outcome = succeed(measure(
-      scene, {"--inside", "0,0.5,0", "--plane", "floor+0.5", "--spacing", "0.13", "--wall-band",
-              "0.1", "-o", folder / "a.json", "-o", folder / "a.html", "-o", folder / "a.svg"}));
-  const auto grid = nlohmann::json::parse(folder.read("a.json"))["grids"][0];
+  const Outcome outcome =
+      succeed(measure(scene, "--inside 0,0.5,0 --plane floor+0.5 --spacing 0.13 --wall-band 0.1 -o",
+                      folder / "a.json", "-o", folder / "a.html", "-o", folder / "a.svg"));
+  const auto grid = folder.json("a.json")["grids"][0];
   REQUIRE(grid["blank"].size() > 8);
   for (const auto& blank : grid["blank"]) {
     CHECK(std::abs(blank["position"][0].get<double>()) < 0.21);
@@ -400,12 +373,12 @@ TEST_CASE("points in a hollow counter are left out of all figures, and the repor
 TEST_CASE("where no point has light, that is told, in the report, too") {
   const FileFolder folder;
   const std::string points = folder.write("p.pts", "0 900 0 0 1 0\n100 900 0 0 1 0\n");
-  const Outcome outcome = succeed(measure(
-      write_box(folder), {"--points", points, "-o", folder / "a.html", "-o", folder / "a.json"}));
+  const Outcome outcome = succeed(measure(write_box(folder), "--points", points, "-o",
+                                          folder / "a.html", "-o", folder / "a.json"));
   CHECK_THAT(outcome.errors, Contains("warning: none of the 2 points has any light") &&
                                  Contains("warning: light 'left' reaches no point"));
   CHECK_THAT(folder.read("a.html"), Contains("none of the 2 points has any light"));
-  CHECK_THAT(nlohmann::json::parse(folder.read("a.json"))["warnings"].dump(),
+  CHECK_THAT(folder.json("a.json")["warnings"].dump(),
              Contains("none of the 2 points has any light"));
 }
 

@@ -8,10 +8,8 @@
 #include <utility>
 
 #include "box_scene.hpp"
-#include "child_process.hpp"
-#include "file_folder.hpp"
+#include "flat_picture.hpp"
 #include "image/display.hpp"
-#include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "report/palette.hpp"
 
@@ -34,7 +32,7 @@ nlohmann::json compare(const FileFolder& folder, const std::string& a, const std
   const Outcome outcome =
       succeed({"compare", a, b, "-o", folder / "compared.png", "--json", folder / "compared.json"});
   CHECK_THAT(outcome.output, Contains("left"));
-  return nlohmann::json::parse(folder.read("compared.json"));
+  return folder.json("compared.json");
 }
 
 TEST_CASE("equal pictures are equal files, wherever they are written") {
@@ -105,7 +103,7 @@ TEST_CASE("two moods of a picture are compared by their levels") {
   const std::vector<std::string> two = typed("compare", picture, "--mood bright --mood half --json",
                                              folder / "levels.json", "-o", folder / "two.png");
   const Outcome outcome = succeed(two);  // the file beside the picture
-  const auto record = nlohmann::json::parse(folder.read("levels.json"));
+  const auto record = folder.json("levels.json");
   CHECK(record["first"] == "bright");
   REQUIRE(record["levels"].size() == 6);
   for (const auto& level : record["levels"]) {
@@ -197,10 +195,10 @@ TEST_CASE("a mood is the same in render, relight and measure as its powers by --
   for (std::size_t i = 0; i < rendered.pixels(); ++i) {
     REQUIRE((*relit.find("G"))[i] == Approx((*rendered.find("G"))[i]).epsilon(1e-5));
   }
-  const auto measured = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), {"measure", scene, "--plane", "1", "--rays", "16", "--photons",
-                                     "10k", "--repeats", "2", "-q"});
-    return run_photile(options).output;
+  const auto measured = [&](const std::vector<std::string>& options) {
+    return succeed(
+               typed("measure", scene, "--plane 1 --rays 16 --photons 10k --repeats 2 -q", options))
+        .output;
   };
   CHECK(measured({"--mood", "night"}) == measured(plain));
   // --light goes on from a mood.
@@ -208,6 +206,30 @@ TEST_CASE("a mood is the same in render, relight and measure as its powers by --
       render_box(folder, "d.exr", {"--mood", "night", "--light", "left=x0.5"});
   CHECK((*read_image(dimmer).find("G"))[500] ==
         Approx(0.5 * (*read_image(by_light).find("G"))[500]).epsilon(1e-5));
+}
+
+TEST_CASE("pictures are compared as the light that their files say they are") {
+  const FileFolder folder;
+  const auto write = [&](const std::string& name, float value, float white) {
+    Image image = flat_picture(8, 8, value);
+    if (white > 0) image.numbers["whiteLuminance"] = white;
+    write_exr(folder / name, image);
+    return folder / name;
+  };
+  const auto mean_ratio = [&](const std::string& a, const std::string& b) {
+    succeed({"compare", a, b, "--json", folder / "compared.json"});
+    return folder.json("compared.json")["picture"]["mean_ratio"].get<double>();
+  };
+  std::string radiance = "#?RADIANCE\nEXPOSURE=4\nFORMAT=32-bit_rle_rgbe\n\n+X 8 +Y 8\n";
+  for (int i = 0; i < 64; ++i) radiance += "\x80\x80\x80\x82";  // 2
+  folder.write("a.hdr", radiance);
+  const std::string half = write("half.exr", 0.5f, 0);
+  CHECK(mean_ratio(folder / "a.hdr", half) == Approx(1));
+  // 50 in units of 1 cd/m2 are 0.5 in units of 100 cd/m2.
+  const std::string hundreds = write("hundreds.exr", 0.5f, 100), ones = write("ones.exr", 50, 1);
+  CHECK(mean_ratio(hundreds, ones) == Approx(1));
+  CHECK(mean_ratio(ones, hundreds) == Approx(1));
+  CHECK(mean_ratio(hundreds, half) == Approx(1));  // of which no unit is known
 }
 
 // `--illuminance` and `--luminance` of `photile render` and `photile relight`.
@@ -318,11 +340,8 @@ TEST_CASE("what is drawn of a render is what its EXR holds, in scenes of watts a
 
 /// What the dynamic linker prints while a command runs.
 std::string loaded_by(const std::vector<std::string>& arguments) {
-  Run run;
-  run.arguments = arguments;
-  run.environment["LD_DEBUG"] = "files";
-  const Outcome outcome = succeed(run);
-  CHECK_THAT(outcome.errors, Catch::Contains("libOpenEXR"));
+  const Outcome outcome = succeed({.arguments = arguments, .environment = {{"LD_DEBUG", "files"}}});
+  CHECK_THAT(outcome.errors, Contains("libOpenEXR"));
   return outcome.errors;
 }
 
@@ -332,24 +351,20 @@ TEST_CASE(
   const std::string box = write_box(folder), picture = folder / "a.exr", png = folder / "a.png";
   const std::vector<std::string> render = typed(
       "render", box, "-o", picture, "-o", png, "--size 16x12 --quality draft --photons 2k --quiet");
-  for (const std::vector<std::string>& command :
-       {std::vector<std::string>{"--version"}, render,
-        std::vector<std::string>{"measure", box, "--plane", "floor+0.75", "--photons", "2k",
-                                 "--rays", "16", "--quiet"},
-        std::vector<std::string>{"relight", picture, "--light", "left=x2", "-o", folder / "b.exr"},
-        std::vector<std::string>{"compare", picture, picture},
-        std::vector<std::string>{"compare", png, png}}) {
-    CHECK_THAT(loaded_by(command), !Catch::Contains("OpenImageIO"));
+  for (const auto& command :
+       {typed("--version"), render,
+        typed("measure", box, "--plane floor+0.75 --photons 2k --rays 16 --quiet"),
+        typed("relight", picture, "--light left=x2 -o", folder / "b.exr"),
+        typed("compare", picture, picture), typed("compare", png, png)}) {
+    CHECK_THAT(loaded_by(command), !Contains("OpenImageIO"));
   }
   folder.write("rug.ppm", "P6 1 1 255\n\x80\x40\x20");
   folder.write("box.mtl", box_mtl() + "newmtl rug\nmap_Kd rug.ppm\n");
   folder.write("box.obj", box_obj() + "vt 0 0\nvt 1 0\nvt 1 1\nusemtl rug\nf 1/1 2/2 3/3\n");
   const std::string texture = folder / "rug.ppm";
-  for (const std::vector<std::string>& command :
-       {std::vector<std::string>{"info", box},
-        std::vector<std::string>{"compare", texture, texture}}) {
+  for (const auto& command : {typed("info", box), typed("compare", texture, texture)}) {
     CHECK_THAT(loaded_by(command),
-               Catch::Contains("photile_openimageio.so") && Catch::Contains("libOpenImageIO.so"));
+               Contains("photile_openimageio.so") && Contains("libOpenImageIO.so"));
   }
 }
 

@@ -2,26 +2,24 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <string>
 #include <vector>
 
 #include "box_scene.hpp"
-#include "child_process.hpp"
 #include "command/run_record.hpp"
-#include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "render/render_costs.hpp"
-#include "weather_text.hpp"
 
 namespace photile::test {
 namespace {
 
 using Catch::Contains;
 
-void render(const FileFolder& folder, const std::vector<std::string>& options) {
-  succeed(typed("render", write_box(folder), "--photons 100k --quality draft", options));
+template <class... Parts>
+void render_draft(const FileFolder& folder, const Parts&... options) {
+  succeed(typed("render", write_box(folder), "--photons 100k --quality draft", options...));
 }
 
 double mean(const Image& picture, const std::string& channel) {
@@ -56,7 +54,7 @@ std::vector<std::string> checked_stages(const nlohmann::json& record) {
 
 TEST_CASE("naive maps take whole discs, and the EXR says so") {
   const FileFolder folder;
-  render(folder, {"--size", "16x12", "--set", "maps=naive", "-o", folder / "out.exr"});
+  render_draft(folder, "--size 16x12 --set maps=naive -o", folder / "out.exr");
   const Image picture = read_image(folder / "out.exr");
   CHECK(picture.attributes.at("photile.maps") == "naive");
   CHECK(picture.attributes.at("photile.area") == "disc");
@@ -64,8 +62,10 @@ TEST_CASE("naive maps take whole discs, and the EXR says so") {
 
 TEST_CASE("an EXR tells how it was made") {
   const FileFolder folder;
-  render(folder, {"--size", "16x12", "--seed", "9", "-k", "30", "--set", "radius=0.25", "--set",
-                  "angle_degrees=45", "--set", "lumen_per_watt=179", "-o", folder / "out.exr"});
+  render_draft(folder,
+               "--size 16x12 --seed 9 -k 30 --set radius=0.25 --set angle_degrees=45 "
+               "--set lumen_per_watt=179 -o",
+               folder / "out.exr");
   const Image picture = read_image(folder / "out.exr");
   const auto attribute = [&](const char* name) { return picture.attributes.at(name); };
   CHECK(attribute("photile.scene") == "box.obj");
@@ -88,20 +88,19 @@ TEST_CASE("an EXR tells how it was made") {
 
 TEST_CASE("a camera stands where --eye says and looks where --look-at says, whatever points up") {
   const FileFolder folder;
-  render(folder,
-         {"-o", folder / "out.exr", "--eye", "0.25,-0.5,0.5", "--look-at", "0.25,-0.5,-0.5"});
+  render_draft(folder, "--eye 0.25,-0.5,0.5 --look-at 0.25,-0.5,-0.5 -o", folder / "out.exr");
   CHECK_THAT(read_image(folder / "out.exr").attributes.at("photile.view"),
              Contains("-vp 0.25 -0.5 0.5 -vd 0 0 -1 -vu 0 1 0"));
-  render(folder, {"-o", folder / "out.exr", "--eye", "0.25,-0.5,0.5", "--look-at", "0.25,0.5,0.5",
-                  "--set", "up=z"});
+  render_draft(folder, "--eye 0.25,-0.5,0.5 --look-at 0.25,0.5,0.5 --set up=z -o",
+               folder / "out.exr");
   CHECK_THAT(read_image(folder / "out.exr").attributes.at("photile.view"),
              Contains("-vp 0.25 -0.5 0.5 -vd 0 1 0 -vu 0 0 1"));
 }
 
 TEST_CASE("a render writes every output that it is asked for, in the size asked for") {
   const FileFolder folder;
-  render(folder, {"--size", "20x10", "-o", folder / "a.exr", "-o", folder / "b.png", "-o",
-                  folder / "c.png"});
+  render_draft(folder, "--size 20x10 -o", folder / "a.exr", "-o", folder / "b.png", "-o",
+               folder / "c.png");
   for (const char* name : {"a.exr", "b.png", "c.png"}) {
     const Image picture = read_image(folder / name);
     CHECK(picture.width == 20);
@@ -112,46 +111,42 @@ TEST_CASE("a render writes every output that it is asked for, in the size asked 
 
 TEST_CASE("the statistics are JSON with every stage, the parameters and the lights") {
   const FileFolder folder;
-  render(folder, {"--size", "16x12", "-o", folder / "a.png", "--stats", folder / "a.json"});
-  const auto statistics = nlohmann::json::parse(folder.read("a.json"));
+  render_draft(folder, "--size 16x12 -o", folder / "a.png", "--stats", folder / "a.json");
+  const auto statistics = folder.json("a.json");
   CHECK(statistics["scene"] == "box.obj");
   CHECK(statistics["parameters"]["photons_emitted"] == 100'000);
   CHECK(statistics["lights"].size() == 2);
   CHECK(statistics["photons_stored"] > 0);
   const std::vector<std::string> names = checked_stages(statistics);
-  CHECK_THAT(names, Catch::VectorContains(std::string("load libraries")));
-  CHECK_THAT(names, Catch::VectorContains(std::string("open devices")));
-  CHECK_THAT(names, Catch::VectorContains(std::string("load scene")));
-  CHECK_THAT(names, Catch::VectorContains(std::string("automatic radius")));
-  CHECK_THAT(names, Catch::VectorContains(std::string("release memory")));
-  CHECK_THAT(names, Catch::VectorContains(std::string("write pictures")));
+  for (const std::string stage : {"load libraries", "open devices", "load scene",
+                                  "automatic radius", "release memory", "write pictures"}) {
+    CHECK_THAT(names, Catch::VectorContains(stage));
+  }
   CHECK(names.size() >= 6);  // and trace, group, build, estimate between them
 }
 
 TEST_CASE("the stages add up with maps that are kept, with reflections and by paths") {
   const FileFolder folder;
-  const auto names_with = [&](std::vector<std::string> options) {
-    options.insert(options.end(),
-                   {"--size", "16x12", "-o", folder / "a.png", "--stats", folder / "a.json"});
-    render(folder, options);
-    return checked_stages(nlohmann::json::parse(folder.read("a.json")));
+  const auto names_with = [&](const auto&... options) {
+    render_draft(folder, "--size 16x12 -o", folder / "a.png", "--stats", folder / "a.json",
+                 options...);
+    return checked_stages(folder.json("a.json"));
   };
   using Catch::VectorContains;
   CHECK_THAT(
-      names_with({"--save-maps", folder / "a.maps", "--glare", folder / "glare.png"}),
+      names_with("--save-maps", folder / "a.maps", "--glare", folder / "glare.png"),
       VectorContains(std::string("save photons")) && VectorContains(std::string("reflections")));
-  CHECK_THAT(names_with({"--load-maps", folder / "a.maps"}),
+  CHECK_THAT(names_with("--load-maps", folder / "a.maps"),
              VectorContains(std::string("load photons")));
-  const FileFolder by_paths;
-  succeed(typed("render", write_box(by_paths), "--integrator path --size 16x12 -o",
-                by_paths / "a.png", "--stats", by_paths / "a.json"));
-  checked_stages(nlohmann::json::parse(by_paths.read("a.json")));
+  succeed(typed("render", write_box(folder), "--integrator path --size 16x12 -o", folder / "a.png",
+                "--stats", folder / "a.json"));
+  checked_stages(folder.json("a.json"));
 }
 
 TEST_CASE("naive maps are darker than those of neighbour groups at borders, hence in the mean") {
   const FileFolder folder;
-  render(folder, {"--size", "32x24", "-o", folder / "neighbour-groups.exr"});
-  render(folder, {"--size", "32x24", "-o", folder / "naive.exr", "--set", "maps=naive"});
+  render_draft(folder, "--size 32x24 -o", folder / "neighbour-groups.exr");
+  render_draft(folder, "--size 32x24 --set maps=naive -o", folder / "naive.exr");
   CHECK(mean(read_image(folder / "naive.exr"), "G") <
         mean(read_image(folder / "neighbour-groups.exr"), "G"));
 }
@@ -233,18 +228,15 @@ std::vector<std::string> by_paths(const FileFolder& folder,
 
 TEST_CASE("paths need no OpenCL device and give layers that can be relit") {
   const FileFolder folder;
-  Run run;
-  run.arguments = by_paths(folder, {"-o", folder / "a.exr", "--stats", folder / "a.json"});
-  run.environment["OCL_ICD_VENDORS"] = folder / "no runtimes";
-  succeed(run);
-
+  succeed({.arguments = by_paths(folder, {"-o", folder / "a.exr", "--stats", folder / "a.json"}),
+           .environment = {{"OCL_ICD_VENDORS", folder / "no runtimes"}}});
   const Image picture = read_image(folder / "a.exr");
   CHECK(picture.find("Combined_left.R") != nullptr);
   CHECK(picture.find("Illuminance_right.Y") != nullptr);
   CHECK(picture.attributes.at("photile.integrator") == "path");
   CHECK(picture.attributes.count("photile.photons_emitted") == 0);
   CHECK(picture.attributes.count("photile.device") == 0);
-  const auto statistics = nlohmann::json::parse(folder.read("a.json"));
+  const auto statistics = folder.json("a.json");
   CHECK(statistics["parameters"]["integrator"] == "path");
   CHECK_FALSE(statistics.contains("photons_stored"));
 
@@ -254,11 +246,10 @@ TEST_CASE("paths need no OpenCL device and give layers that can be relit") {
 
 TEST_CASE("a signal stops paths with 130") {
   const FileFolder folder;
-  Run run;
-  run.arguments = by_paths(folder, {"-o", folder / "out.exr", "--samples", "65536"});
-  run.terminal = true;
-  run.signal_when = "%  ";  // only a bar under way prints one
-  const Outcome outcome = run_photile(run);
+  const Outcome outcome =
+      run_photile({.arguments = by_paths(folder, {"-o", folder / "out.exr", "--samples", "65536"}),
+                   .terminal = true,
+                   .signal_when = "%  "});  // only a bar under way prints one
   INFO(outcome.errors);
   CHECK(outcome.exit_code == 130);
   CHECK_FALSE(std::filesystem::exists(folder / "out.exr"));
@@ -268,10 +259,8 @@ TEST_CASE("a signal stops paths with 130") {
 
 /// The box without its lamps and one of its walls.
 std::string write_unlit_box(const FileFolder& folder) {
-  std::string obj = box_obj();
+  std::string obj = open_box_obj();
   obj.erase(obj.find("v -0.8 0.99"));
-  const std::string wall = "f 1 4 8 5\n";
-  obj.erase(obj.find(wall), wall.size());
   folder.write("box.mtl", box_mtl());
   return folder.write("unlit.obj", obj);
 }
@@ -279,35 +268,24 @@ std::string write_unlit_box(const FileFolder& folder) {
 TEST_CASE("a room without lamps is lit by a sky in every command") {
   const FileFolder folder;
   const std::string room = write_unlit_box(folder);
-  const auto always = [](int, int, int hour) { return hour > 8 && hour < 17 ? 200 : 0; };
-  const std::string weather = folder.write("year.epw", weather_text(always, always));
   const std::string eyes = folder.write("eyes.pts", "0 0 0.5 0 0 -1\n");
-  const std::vector<std::string> sky{"--sky", "overcast=10000"},
-      place{"--plane", "floor+0.75", "--wall-band", "0.2", "--inside",  "0,0,0",
-            "--rays",  "32",         "--repeats",   "2",   "--photons", "10k"};
-  const auto joined = [](std::vector<std::string> all,
-                         std::initializer_list<std::vector<std::string>> more) {
-    for (const auto& words : more) all.insert(all.end(), words.begin(), words.end());
-    all.emplace_back("--quiet");
-    return all;
-  };
-  const std::vector<std::string> picture = typed("--quality draft --photons 2k -k 20 --size 16x12");
+  const std::string path =
+      folder.write("path.json", R"([{"time": 0, "position": [0, 0, 0.5], "look_at": [0, 0, 0]},
+                       {"time": 0.04, "position": [0, 0, 0.4], "look_at": [0, 0, 0]}])");
+  const char *sky = "--sky overcast=10000",
+             *picture = "--quality draft --photons 2k -k 20 --size 16x12",
+             *rays = "--rays 32 --repeats 2 --photons 10k",
+             *plane = "--plane floor+0.75 --wall-band 0.2 --inside 0,0,0";
   for (const auto& command :
-       {joined({"render", room, "-o", folder / "a.exr"}, {sky, picture}),
-        joined({"walk", room, "-o", folder / "walk.png", "--camera-path",
-                folder.write("path.json", R"([{"time": 0, "position": [0, 0, 0.5],
-                    "look_at": [0, 0, 0]}, {"time": 0.04, "position": [0, 0, 0.4],
-                    "look_at": [0, 0, 0]}])")},
-               {sky, picture}),
-        joined({"trace", room, "-o", folder / "a.photons", "--photons", "2k"}, {sky}),
-        joined({"measure", room}, {sky, place}),
-        joined({"measure", room, "--daylight-factor"}, {place}),
-        joined({"daylight", room, "--weather", weather, "--patches", "145"}, {place}),
-        joined({"glare", room, "--observers", eyes, "--ratings", "ugr", "--rays", "32", "--repeats",
-                "2", "--photons", "10k"},
-               {sky})}) {
+       {typed("render", room, "-o", folder / "a.exr", sky, picture),
+        typed("walk", room, "-o", folder / "walk.png", "--camera-path", path, sky, picture),
+        typed("trace", room, "-o", folder / "a.photons", "--photons 2k", sky),
+        typed("measure", room, sky, plane, rays),
+        typed("measure", room, "--daylight-factor", plane, rays),
+        typed("daylight", room, "--weather", write_weather(folder), "--patches 145", plane, rays),
+        typed("glare", room, "--observers", eyes, "--ratings ugr", rays, sky)}) {
     CAPTURE(command[0], command[3]);
-    succeed(command);
+    succeed(typed(command, "--quiet"));
   }
 }
 
@@ -357,16 +335,11 @@ TEST_CASE("the stated errors of a light are the scatter of its layer from seed t
   }
 }
 
-TEST_CASE("stating errors changes no bit of the picture") {
+TEST_CASE("stated errors change no bit of the picture, and each is in proportion to its light") {
   const FileFolder folder;
   render(folder, 1);
   render_picture(folder, folder / "alone.exr", "1", {});
   CHECK(read_image(folder / "1.exr").channels == read_image(folder / "alone.exr").channels);
-}
-
-TEST_CASE("errors are relit as pictures are: a light's own in proportion to its power") {
-  const FileFolder folder;
-  render(folder, 1);
   succeed({"relight", folder / "1-errors.exr", "--light", "left=x3", "-o", folder / "relit.exr"});
   const Image before = read_image(folder / "1-errors.exr"),
               after = read_image(folder / "relit.exr");
@@ -377,6 +350,65 @@ TEST_CASE("errors are relit as pictures are: a light's own in proportion to its 
     CHECK(tripled[pixel] == Approx(3 * own[pixel]));
   }
   CHECK(*before.find("Combined_right.G") == *after.find("Combined_right.G"));
+}
+
+// `photile info` against what the written scene is known to hold, and both integrators.
+
+TEST_CASE("a luminaire beside an OBJ is stated in lumens and in its electrical watts") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  folder.write("lamp.ies",
+               "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0.1 0.1 0\n1 1 120\n0 90 180\n0\n"
+               "100 100 100\n");
+  folder.write("lamps.json", R"([{"name": "tubes", "file": "lamp.ies", "position": [0, 0.9, 0],
+                                  "count": [2, 1], "spacing": [0.3, 0]}])");
+  const std::vector<std::string> lamps{"--luminaires", folder / "lamps.json"};
+  const double lumens = 400 * glm::pi<double>();
+  const auto facts = nlohmann::json::parse(succeed(typed("info --json", scene, lamps)).output);
+  REQUIRE(facts["lights"].size() == 4);
+  CHECK(facts["lights"][0]["watts"].get<double>() > 0);  // radiant, as OBJ has it
+  const auto& tube = facts["lights"][3];
+  CHECK(tube["lumens"].get<double>() == Approx(lumens).epsilon(1e-9));
+  CHECK(tube["electrical_watts"].get<double>() == Approx(120));
+  CHECK(tube["unit"] == "lm");
+  CHECK_FALSE(tube.contains("watts"));
+  CHECK(facts["groups"][0]["electrical_watts"].get<double>() == Approx(240));
+  CHECK_FALSE(facts["groups"][0].contains("watts"));
+  const std::string text = succeed(typed("info", scene, lamps)).output;
+  CHECK_THAT(text, Contains("photometric, 1257 lm, takes 120 W, of group tubes") &&
+                       Contains("group: tubes: 2 lights, 2513 lm\n"));
+  // Dimmed, it takes less.
+  const std::string picture = folder / "a.exr";
+  const Outcome rendered =
+      succeed(typed("render", scene, "-o", picture,
+                    "--size 16x12 --quality draft --photons 2k -k 20 --light tubes=x0.5", lamps));
+  CHECK_THAT(rendered.errors + rendered.output, Contains("628.3 lm, takes 60 W"));
+  const std::string relit = succeed({"relight", picture}).output;
+  CHECK_THAT(relit,
+             Contains("group: tubes: 1257 lm\n") && Contains("light: left: ") && Contains(" W ("));
+}
+
+TEST_CASE("both integrators render a floor under a sky, as a layer that can be relit") {
+  const FileFolder folder;
+  const std::string integrator = GENERATE("photon-map", "path");
+  const std::string picture = folder / "floor.exr";
+  folder.write("floor.obj", "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nf 4 3 2 1\n");
+  succeed(typed("render", folder / "floor.obj", "-o", picture,
+                "--size 64x48 --samples 4 --integrator", integrator,
+                "--quality draft --sky uniform=6830"));
+  const Image image = read_image(picture);
+  const auto* sky = image.find("Combined_sky.G");
+  const auto* illuminance = image.find("Illuminance_sky.Y");
+  REQUIRE(sky != nullptr);
+  REQUIRE(illuminance != nullptr);
+  // Somewhere the floor is seen, with 6830 lux, and somewhere the sky, with 10 / pi W/(m2 sr).
+  float most = 0;
+  for (const float lux : *illuminance) most = std::max(most, lux);
+  CHECK(most == Approx(6830).epsilon(integrator == "path" ? 0.5 : 0.3));
+  float brightest = 0;
+  for (const float radiance : *sky) brightest = std::max(brightest, radiance);
+  CHECK(brightest >= Approx(10 / 3.14159265).epsilon(0.01));
+  succeed({"relight", picture, "--light", "sky=x2", "-o", folder / "twice.exr"});
 }
 
 }  // namespace

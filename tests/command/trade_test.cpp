@@ -7,9 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "box_scene.hpp"
-#include "child_process.hpp"
-#include "file_bytes.hpp"
-#include "file_folder.hpp"
 #include "photile/image.hpp"
 
 namespace photile::test {
@@ -48,15 +45,12 @@ TEST_CASE("a trade writes its files and prints a row for each requested error", 
 
 TEST_CASE("pictures are made until one states the requested error, which its settings make again") {
   const FileFolder folder;
-  const std::vector<std::string> box{"render", write_box(folder), "--size", "24x18"};
-  const auto photile = [&](std::vector<std::string> more) {
-    more.insert(more.begin(), box.begin(), box.end());
-    const Outcome outcome = succeed(more);
-    return outcome;
+  const auto render = [&](const auto&... more) {
+    return succeed(typed("render", write_box(folder), "--size 24x18", more...));
   };
   const Outcome outcome =
-      photile({"-o", folder / "box.exr", "--set", "light_map_rays=8", "--photons", "20k",
-               "--samples", "2", "--target-error", "0.4%", "--stats", folder / "box.json"});
+      render("--set light_map_rays=8 --photons 20k --samples 2 --target-error 0.4% -o",
+             folder / "box.exr", "--stats", folder / "box.json");
   CHECK_THAT(outcome.errors, Contains("picture 1: standard error") && Contains("picture 2: "));
   const auto record = nlohmann::json::parse(bytes_of(folder / "box.json"));
   const auto maps = std::find_if(record["stages"].begin(), record["stages"].end(),
@@ -67,10 +61,9 @@ TEST_CASE("pictures are made until one states the requested error, which its set
 
   const auto& used = record["parameters"];
   CHECK(used["light_map_rays"] > 8);
-  photile({"-o", folder / "again.exr", "--set", "light_map_rays=" + used["light_map_rays"].dump(),
-           "--photons", used["photons_emitted"].dump(), "--samples",
-           used["samples_per_pixel"].dump(), "--set", "passes=" + used["passes"].dump(), "--set",
-           "light_maps=on", "-q"});
+  render("-o", folder / "again.exr", "--set", "light_map_rays=" + used["light_map_rays"].dump(),
+         "--photons", used["photons_emitted"].dump(), "--samples", used["samples_per_pixel"].dump(),
+         "--set", "passes=" + used["passes"].dump(), "--set light_maps=on -q");
   const Image made = read_image(folder / "box.exr"), again = read_image(folder / "again.exr");
   CHECK(made.channels == again.channels);
 }
@@ -84,9 +77,8 @@ TEST_CASE("an error that is out of reach is told") {
 
 TEST_CASE("pictures are made for a time") {
   const FileFolder folder;
-  const std::string scene = write_box(folder);
-  const Outcome outcome =
-      succeed({"render", scene, "-o", folder / "box.exr", "--size", "24x18", "--for", "1ms"});
+  const Outcome outcome = succeed(
+      typed("render", write_box(folder), "-o", folder / "box.exr", "--size 24x18 --for 1ms"));
   CHECK_THAT(outcome.errors,
              Contains("picture 1: ") &&
                  Contains("--photons 1500000 -k 100 --samples 4 --set light_map_rays=16") &&
@@ -102,7 +94,7 @@ TEST_CASE("validate prints expected, measured and error, and says the same in JS
                                    "--paths", "100", "--json", folder / "readings.json"});
   CHECK_THAT(outcome.output, Contains("expected") && Contains("point light over a surface") &&
                                  Contains("below the lamp") && Contains("ok"));
-  const auto record = nlohmann::json::parse(folder.read("readings.json"));
+  const auto record = folder.json("readings.json");
   REQUIRE(record["readings"].size() == 4);
   for (const auto& reading : record["readings"]) {
     CHECK(reading["unit"] == "lx");
@@ -142,7 +134,7 @@ std::vector<std::string> bake(const FileFolder& folder, const std::vector<std::s
 TEST_CASE("a baked scene has a second set of coordinates and a picture for each light") {
   const FileFolder folder;
   succeed(bake(folder));
-  const nlohmann::json document = nlohmann::json::parse(folder.read("baked.gltf"));
+  const nlohmann::json document = folder.json("baked.gltf");
   const auto& primitive = document["meshes"][0]["primitives"][0];
   const auto& lights = document["accessors"][primitive["attributes"]["TEXCOORD_1"].get<int>()];
   CHECK(lights["type"] == "VEC2");
@@ -194,7 +186,7 @@ TEST_CASE("a baked scene in one file holds what the files of the other form hold
   };
   bake_to("files.gltf");
   bake_to("one.glb");
-  nlohmann::json files = nlohmann::json::parse(folder.read("files.gltf"));
+  nlohmann::json files = folder.json("files.gltf");
   const std::string glb = folder.read("one.glb"), bin = folder.read("files.bin");
   REQUIRE(glb.substr(0, 4) == "glTF");
   CHECK(word_at(glb, 4) == 2);

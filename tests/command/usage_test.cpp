@@ -6,12 +6,9 @@
 #include <sstream>
 
 #include "box_scene.hpp"
-#include "child_process.hpp"
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "command/validators.hpp"
-#include "file_bytes.hpp"
-#include "file_folder.hpp"
 #include "photile/image.hpp"
 #include "photile/renderer.hpp"
 #include "report/tables.hpp"
@@ -47,9 +44,7 @@ TEST_CASE("the help of a command shows the settings of its usual quality") {
 }
 
 TEST_CASE("a full disk behind standard output is a failure") {
-  Run run;
-  run.arguments = {"--version"};
-  run.standard_output = "/dev/full";
+  const Run run{.arguments = {"--version"}, .standard_output = "/dev/full"};
   CHECK_THAT(only_error(run_photile(run), 1), Contains("standard output"));
 }
 
@@ -113,7 +108,7 @@ TEST_CASE("a picture and its statistics tell every setting that it was made with
                 "--size 16x12 --photons 5k --quality draft --set quota=equal",
                 "--set photons_per_cell=0.1 --set passes=3 --stats", folder / "a.json"));
   const Image picture = read_image(folder / "a.exr");
-  const auto recorded = nlohmann::json::parse(folder.read("a.json"))["parameters"];
+  const auto recorded = folder.json("a.json")["parameters"];
   for (const Setting& setting : settings()) {
     const std::string name(setting.name);
     CAPTURE(name);
@@ -134,7 +129,7 @@ TEST_CASE("--quality sets settings that go together, and those given beside it c
   const auto made_with = [&](const std::vector<std::string>& more) {
     succeed(typed("render", write_box(folder), "-o", folder / "a.exr",
                   "--size 8x6 --photons 5k --stats", folder / "a.json", more));
-    const auto record = nlohmann::json::parse(folder.read("a.json"));
+    const auto record = folder.json("a.json");
     CHECK(record["asked"]["quality"] == (more.front() == "--quality" ? more[1] : "good"));
     return record["parameters"];
   };
@@ -160,7 +155,7 @@ TEST_CASE("nodes gather in pictures unless another method is asked for") {
   succeed(typed("render", write_box(folder), "-o", folder / "a.exr",
                 "--size 8x6 --photons 5k -k 50 --samples 2", option, value, "--stats",
                 folder / "a.json"));
-  const auto used = nlohmann::json::parse(folder.read("a.json"))["parameters"];
+  const auto used = folder.json("a.json")["parameters"];
   CHECK((used["light_map_rays"] > 0) == gather);
 }
 

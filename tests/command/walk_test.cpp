@@ -6,8 +6,6 @@
 #include <filesystem>
 
 #include "box_scene.hpp"
-#include "child_process.hpp"
-#include "file_folder.hpp"
 #include "photile/image.hpp"
 
 namespace photile::test {
@@ -86,11 +84,10 @@ TEST_CASE("a walk that is killed keeps its whole frames, and loses the one in pr
   constexpr std::size_t frames = 201;
   const FileFolder folder;
   const auto file = [&](std::size_t number) { return folder / fmt::format("f.{:02}.exr", number); };
-  Run run;
-  run.arguments = walk(folder, {}, std::to_string(frames - 1));
-  run.terminal = true;
-  run.signal_when = "frames/s";  // the bar, after the first frame
-  run.signal = SIGKILL;
+  const Run run{.arguments = walk(folder, {}, std::to_string(frames - 1)),
+                .terminal = true,
+                .signal_when = "frames/s",  // the bar, after the first frame
+                .signal = SIGKILL};
   CHECK(run_photile(run).exit_code == 128 + SIGKILL);
   std::size_t finished = 0;
   while (std::filesystem::exists(file(finished + 1))) {
@@ -136,13 +133,9 @@ TEST_CASE(
       {"time": 0, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
       {"time": 1, "position": [0, 0, 0.9], "look_at": [0, 0, -1], "fov": 60},
       {"time": 2, "position": [0.3, 0, 0.9], "look_at": [0, 0, -1], "fov": 60}]})";
-  std::vector<std::string> arguments = walk(folder, {"--quick"}, "2");
-  arguments.back() = "--quick";
-  for (std::string& argument : arguments) {
-    if (argument == folder / "path.json") argument = folder.write("still.json", still);
-    if (argument == folder / "f.##.exr") argument = folder / "q.##.png";
-  }
-  succeed(arguments);
+  succeed(typed("walk", write_box(folder), "-o", folder / "q.##.png",
+                "--fps 2 --quality draft --photons 20k --size 16x12 --quick --camera-path",
+                folder.write("still.json", still)));
   CHECK(folder.read("q.01.png") == folder.read("q.02.png"));
   CHECK(folder.read("q.01.png") != folder.read("q.05.png"));
   CHECK_FALSE(std::filesystem::exists(folder / "q.01.exr"));
@@ -166,9 +159,7 @@ TEST_CASE("a walk from saved maps draws the same frames, without a photon") {
   const std::string maps = folder / "box.maps";
   const std::vector<std::string> rays{"--quick", "--set", "light_map_rays=4"};
   const auto frames = [&](const std::string& option) {
-    std::vector<std::string> arguments = walk(folder, rays);
-    arguments.insert(arguments.end(), {option, maps});
-    succeed(arguments);
+    succeed(typed(walk(folder, rays), option, maps));
     std::vector<Image> images;
     for (const char* name : {"f.01.exr", "f.04.exr"}) {
       images.push_back(read_image(folder / name));

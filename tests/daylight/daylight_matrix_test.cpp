@@ -17,7 +17,7 @@
 
 namespace photile::test {
 
-using namespace photile::daylight;
+using namespace daylight;
 
 namespace {
 
@@ -55,7 +55,7 @@ TEST_CASE("a direction has the patch that it points into") {
 
 TEST_CASE("patches tile the sky: each direction has one light, found by its cell") {
   SceneBuilder builder("plate");
-  builder.grid({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
+  builder.grid({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 1, builder.add(diffuse(0.0f)));
   builder.add(point_light("lamp", {0, 1, 0}));
   for (const int count : weather::patch_counts) {
     Scene scene = builder.build();
@@ -76,7 +76,7 @@ TEST_CASE("patches tile the sky: each direction has one light, found by its cell
 }
 
 TEST_CASE("north turns patches clockwise as seen from above") {
-  Scene scene = plate(diffuse(glm::vec3(0.0f)), 2);
+  Scene scene = plate(diffuse(0.0f), 2);
   weather::add_sky_lights(weather::sky_patches(145), pi / 2, scene);
   const auto patch = std::find_if(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
     return light.name == weather::patch_name(0);
@@ -86,7 +86,7 @@ TEST_CASE("north turns patches clockwise as seen from above") {
 }
 
 TEST_CASE("all patches together are an even sky through a window") {
-  Scene scene = Room::builder(diffuse(glm::vec3(0.0f))).build();
+  Scene scene = Room::builder(diffuse(0.0f)).build();
   const auto patches = weather::sky_patches(145);
   scene.portals = {Room::window()};
   const Sensor sensor{{1.5, 0.8, 3.0}, {0, 0, -1}};
@@ -107,9 +107,9 @@ TEST_CASE("all patches together are an even sky through a window") {
 TEST_CASE("reflected light adds to what comes straight, as paths find it") {
   // Rays that follow a coat scatter more.
   const auto [walls, material, tolerance] = GENERATE(table<std::string, Material, double>(
-      {{"grey", diffuse(glm::vec3(0.6f)), 0.025},
+      {{"grey", diffuse(0.6f), 0.025},
        {"coloured", diffuse(glm::vec3(0.9f, 0.5f, 0.2f)), 0.025},
-       {"coated", glossy(glm::vec3(0.8f), glm::vec3(0.04f), 0.4f), 0.05}}));
+       {"coated", glossy(0.8f, 0.04f, 0.4f), 0.05}}));
   Scene scene = Room::builder(material).build();
   const auto patches = weather::sky_patches(145);
   Scene even = scene;
@@ -137,7 +137,7 @@ TEST_CASE("reflected light adds to what comes straight, as paths find it") {
 }
 
 TEST_CASE("stated errors are the scatter of seeds") {
-  Scene scene = Room::builder(diffuse(glm::vec3(0.5f))).build();
+  Scene scene = Room::builder(diffuse(0.5f)).build();
   scene.portals = {Room::window()};
   const auto patches = weather::sky_patches(145);
   const Sensor sensor{{2.0, 0.8, 3.5}, {0, 1, 0}};
@@ -215,7 +215,7 @@ TEST_CASE("light that does not fade between surfaces is an error") {
 TEST_CASE("a wall without thickness parts light, and a shelf above a floor") {
   // Two rooms of one floor and one ceiling: the sky shines into one of them.
   SceneBuilder builder("two rooms");
-  const auto wall = builder.add(diffuse(glm::vec3(0.7f)));
+  const auto wall = builder.add(diffuse(0.7f));
   builder.grid({0, 0, 0}, {0, 0, 3}, {8, 0, 0}, 1, wall);
   builder.grid({0, 2.5f, 0}, {8, 0, 0}, {0, 0, 3}, 1, wall);
   builder.grid({0, 0, 0}, {0, 2.5f, 0}, {0, 0, 3}, 1, wall);
@@ -257,7 +257,7 @@ TEST_CASE("in the open an hour has its diffuse lux, and the sun's by its elevati
   matrix.from_sky.push_back(0);
   matrix.straight = matrix.from_sky;
   SceneBuilder builder("far below");
-  builder.grid({-1, -5, -1}, {0, 0, 2}, {2, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
+  builder.grid({-1, -5, -1}, {0, 0, 2}, {2, 0, 0}, 1, builder.add(diffuse(0.0f)));
   builder.add(point_light("lamp", {0, 1, 0}));
   const Scene scene = builder.build();
   const Sensor sensor{{0, 0, 0}, {0, 1, 0}};

@@ -19,7 +19,7 @@ namespace photile::test {
 namespace {
 
 using Room = RoomWithWindow;
-using namespace photile::daylight;
+using namespace daylight;
 using std::numbers::pi;
 
 // Figures of a year against years made by hand.
@@ -247,7 +247,7 @@ TEST_CASE("stated errors of DA and sDA are the scatter of years") {
 }
 
 TEST_CASE("rounds of a sky are their mean, with and without a part, and none is another again") {
-  Scene scene = Room::builder(diffuse(glm::vec3(0.5f))).build();
+  Scene scene = Room::builder(diffuse(0.5f)).build();
   scene.portals = {Room::window()};
   Year year{{}, weather::sky_patches(145), {{{1.8, 0.8, 3.0}, {0, 1, 0}}}, true, {}};
   year.parameters.measuring.gathering.rays = 16;
@@ -274,7 +274,7 @@ TEST_CASE("rounds of a sky are their mean, with and without a part, and none is 
 }
 
 TEST_CASE("a closed pane lets through what is asked for") {
-  SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.0f)));
+  SceneBuilder builder = Room::builder(diffuse(0.0f));
   const auto glass = builder.add(pane("glazing"));
   builder.quad({Room::left, Room::sill, 0}, {Room::right, Room::sill, 0},
                {Room::right, Room::head, 0}, {Room::left, Room::head, 0}, glass);
@@ -304,7 +304,7 @@ TEST_CASE("a closed pane lets through what is asked for") {
 }
 
 TEST_CASE("blinds close panes that are partly there, as IFC has them") {
-  SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.0f)));
+  SceneBuilder builder = Room::builder(diffuse(0.0f));
   Material ifc = diffuse({0.0f, 0.5f, 0.75f});
   ifc.name = "glazing";
   ifc.opacity = 0.1f;

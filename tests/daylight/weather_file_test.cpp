@@ -1,7 +1,6 @@
 // EPW files, whole and damaged.
 #include "weather/weather_file.hpp"
 
-#include <catch2/catch.hpp>
 #include <random>
 
 #include "file_bytes.hpp"

@@ -1,5 +1,6 @@
 // Buffers, and what they may take together.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <vector>
@@ -9,9 +10,9 @@
 namespace photile::test {
 namespace {
 
-using photile::device::Buffer;
-using photile::device::Context;
-using photile::device::Reclaimer;
+using device::Buffer;
+using device::Context;
+using device::Reclaimer;
 
 std::vector<int> counted(std::size_t size) {
   std::vector<int> values(size);
@@ -19,14 +20,18 @@ std::vector<int> counted(std::size_t size) {
   return values;
 }
 
+template <class T>
+std::vector<T> content_of(Context& context, const Buffer<T>& buffer) {
+  std::vector<T> values(buffer.size());
+  context.read(buffer, std::span(values));
+  return values;
+}
+
 TEST_CASE("an uploaded buffer reads back as it was") {
   Context context({});
   const auto values = counted(1000);
   const auto buffer = context.upload<int>(values, "values");
-  REQUIRE(buffer.size() == 1000);
-  std::vector<int> back(1000);
-  context.read<int>(buffer, back);
-  CHECK(back == values);
+  CHECK(content_of(context, buffer) == values);
 }
 
 TEST_CASE("a write and a read at an offset touch those elements only") {
@@ -34,34 +39,22 @@ TEST_CASE("a write and a read at an offset touch those elements only") {
   auto buffer = context.upload<int>(counted(10), "values");
   const std::vector<int> inserted = {-1, -2, -3};
   context.write<int>(buffer, inserted, 4);
-  std::vector<int> back(10);
-  context.read<int>(buffer, back);
-  CHECK(back == std::vector<int>{0, 1, 2, 3, -1, -2, -3, 7, 8, 9});
+  CHECK(content_of(context, buffer) == std::vector<int>{0, 1, 2, 3, -1, -2, -3, 7, 8, 9});
   std::vector<int> part(2);
   context.read<int>(buffer, part, 6);
   CHECK(part == std::vector<int>{-3, 7});
 }
 
-TEST_CASE("fill sets a range and leaves the rest") {
+TEST_CASE("fill sets a range, perhaps of millions, and leaves the rest") {
   Context context({});
-  auto buffer = context.upload<int>(counted(6), "values");
-  context.fill(buffer, 9, 2, 3);
-  context.fill(buffer, 8, 0, 0);
-  std::vector<int> back(6);
-  context.read<int>(buffer, back);
-  CHECK(back == std::vector<int>{0, 1, 9, 9, 9, 5});
-}
-
-TEST_CASE("fill sets a range of millions and leaves the rest") {
-  Context context({});
-  const std::vector<int> values = counted(3'000'001);
-  auto buffer = context.upload<int>(values, "values");
-  context.fill(buffer, 9, 7, 2'500'003);
-  std::vector<int> back(values.size());
-  context.read<int>(buffer, back);
-  std::vector<int> expected = values;
-  std::fill_n(expected.begin() + 7, 2'500'003, 9);
-  CHECK((back == expected));
+  for (const auto& [size, first, count] : {std::array{6, 2, 3}, {3'000'001, 7, 2'500'003}}) {
+    std::vector<int> expected = counted(size);
+    auto buffer = context.upload<int>(expected, "values");
+    context.fill(buffer, 9, first, count);
+    context.fill(buffer, 8, 0, 0);
+    std::fill_n(expected.begin() + first, count, 9);
+    CHECK((content_of(context, buffer) == expected));
+  }
 }
 
 TEST_CASE("an output is zero until it is written, and is read into the values it was made for") {
@@ -77,18 +70,15 @@ TEST_CASE("an output is zero until it is written, and is read into the values it
 
 TEST_CASE("a shared buffer holds the host's values, and outlives its context") {
   const auto values = counted(1000);
-  photile::device::Buffer<int> outliving;
+  device::Buffer<int> outliving;
   {
     Context context({});
     const std::uint64_t before = context.allocated_bytes();
     outliving = context.share<int>(values, "values");
-    if (context.info().type == photile::DeviceType::cpu) {
+    if (context.info().type == DeviceType::cpu) {
       CHECK(context.allocated_bytes() == before);
     }
-    REQUIRE(outliving.size() == 1000);
-    std::vector<int> back(1000);
-    context.read<int>(outliving, back);
-    CHECK(back == values);
+    CHECK(content_of(context, outliving) == values);
     CHECK(context.share<int>({}, "nothing").size() == 0);
   }
 }
@@ -97,9 +87,9 @@ TEST_CASE("a transfer past the end of a buffer is refused") {
   Context context({});
   auto buffer = context.allocate<int>(10, "values");
   std::vector<int> values(3);
-  CHECK_THROWS_AS(context.read<int>(buffer, values, 8), photile::DeviceError);
-  CHECK_THROWS_AS(context.write<int>(buffer, values, 8), photile::DeviceError);
-  CHECK_THROWS_AS(context.read<int>(buffer, values, 11), photile::DeviceError);
+  CHECK_THROWS_AS(context.read<int>(buffer, values, 8), DeviceError);
+  CHECK_THROWS_AS(context.write<int>(buffer, values, 8), DeviceError);
+  CHECK_THROWS_AS(context.read<int>(buffer, values, 11), DeviceError);
 }
 
 TEST_CASE("fill sets every element, also of sizes that OpenCL has no pattern for") {
@@ -109,18 +99,16 @@ TEST_CASE("fill sets every element, also of sizes that OpenCL has no pattern for
   Context context({});
   auto numbers = context.allocate<unsigned>(1001, "numbers");
   context.fill(numbers, 0xDEADBEEFu);
-  std::vector<unsigned> back(1001);
-  context.read<unsigned>(numbers, back);
-  CHECK(back == std::vector<unsigned>(1001, 0xDEADBEEFu));
+  CHECK(content_of(context, numbers) == std::vector<unsigned>(1001, 0xDEADBEEFu));
 
   // 12 bytes; more than one of the blocks of 1 MiB that such a fill goes by.
   const std::size_t count = 200'003;
   auto triples = context.allocate<Triple>(count, "triples");
   context.fill(triples, Triple{1, 2, 3});
-  std::vector<Triple> triples_back(count);
-  context.read<Triple>(triples, triples_back);
   std::size_t wrong = 0;
-  for (const auto& t : triples_back) wrong += !(t.x == 1 && t.y == 2 && t.z == 3);
+  for (const Triple& t : content_of(context, triples)) {
+    wrong += !(t.x == 1 && t.y == 2 && t.z == 3);
+  }
   CHECK(wrong == 0);
 }
 
@@ -150,7 +138,7 @@ TEST_CASE("live and peak bytes count buffers, also those moved") {
 }
 
 TEST_CASE("a buffer may outlive its context") {
-  photile::device::Buffer<int> buffer;
+  device::Buffer<int> buffer;
   {
     Context context({});
     buffer = context.allocate<int>(10, "survivor");
@@ -160,8 +148,8 @@ TEST_CASE("a buffer may outlive its context") {
 
 // What live buffers may take together, and who is asked where they take too much.
 
-photile::DeviceOptions limited(std::uint64_t bytes) {
-  photile::DeviceOptions options;
+DeviceOptions limited(std::uint64_t bytes) {
+  DeviceOptions options;
   options.memory_bytes = bytes;
   return options;
 }
@@ -182,7 +170,7 @@ TEST_CASE("live buffers together stay within the memory that the user allows") {
   CHECK(context.memory_limit() == 10'000);
   CHECK(context.largest_buffer() == 10'000);
   const auto first = context.allocate<std::uint8_t>(6'000, "first");
-  CHECK_THROWS_AS(context.allocate<std::uint8_t>(4'001, "second"), photile::DeviceMemoryError);
+  CHECK_THROWS_AS(context.allocate<std::uint8_t>(4'001, "second"), DeviceMemoryError);
   const auto second = context.allocate<std::uint8_t>(4'000, "second");
   CHECK(context.allocated_bytes() == 10'000);
   CHECK(context.peak_allocated_bytes() == 10'000);
@@ -223,7 +211,7 @@ TEST_CASE("an allocation takes what reclaimers release, and no more than it need
   for (int i = 0; i < 4; ++i) hoard.buffers.push_back(context.allocate<std::uint8_t>(2'000, ""));
   const auto buffer = context.allocate<std::uint8_t>(5'000, "");
   CHECK(hoard.buffers.size() == 2);
-  CHECK_THROWS_AS(context.allocate<std::uint8_t>(5'001, ""), photile::DeviceMemoryError);
+  CHECK_THROWS_AS(context.allocate<std::uint8_t>(5'001, ""), DeviceMemoryError);
   CHECK(hoard.buffers.empty());
 }
 
@@ -250,9 +238,7 @@ TEST_CASE("what was saved from a buffer is restored") {
   buffer = {};
   CHECK(context.allocated_bytes() == 0);
   context.restore(buffer, content, "values");
-  std::vector<std::uint32_t> read(buffer.size());
-  context.read(buffer, std::span(read));
-  CHECK(read == values);
+  CHECK(content_of(context, buffer) == values);
 }
 
 }  // namespace

@@ -12,11 +12,10 @@
 namespace photile::test {
 namespace {
 
-using photile::DeviceInfo;
-using photile::DeviceType;
-using photile::device::DeviceChoice;
-using photile::device::select_devices;
-using photile::device::untested_gpu;
+using Catch::Contains;
+using device::DeviceChoice;
+using device::select_devices;
+using device::untested_gpu;
 
 using Choices = std::vector<DeviceChoice>;
 
@@ -77,12 +76,11 @@ TEST_CASE("a GPU that has not passed its test is taken by default only where it 
     CHECK(select_device(devices, "") == 2);
     CHECK(select_device(devices, "gpu") == 3);
     const auto why = untested_gpu(devices, devices[2]);
-    CHECK_THAT(why,
-               Catch::Contains("4:0 GeForce 1 is not used") && Catch::Contains("--device 4:0"));
-    CHECK_THAT(why, Catch::Contains(*result == '\0' ? "photile devices --test" : result));
+    CHECK_THAT(why, Contains("4:0 GeForce 1 is not used") && Contains("--device 4:0"));
+    CHECK_THAT(why, Contains(*result == '\0' ? "photile devices --test" : result));
     CHECK(select_device(std::span(devices).subspan(3, 2), "") == 0);
     CHECK_THAT(untested_gpu(std::span(devices).subspan(3, 2), devices[3]),
-               Catch::Contains("no other device"));
+               Contains("no other device"));
   }
   devices[3].test_result = "";
   devices[4].test_result = "passed";
@@ -135,51 +133,50 @@ TEST_CASE("a name may hold a stroke of its own") {
 TEST_CASE("more parts than compute units, and partitions without a number, are refused") {
   for (const char* selector : {"cpu/9", "cpu=9", "cpu=4+5", "cpu=999999999+999999999"}) {
     INFO(selector);
-    CHECK_THROWS_WITH(select_devices(machine, selector), Catch::Contains(selector) &&
-                                                             Catch::Contains("3:0") &&
-                                                             Catch::Contains(" 8;"));
+    CHECK_THROWS_WITH(select_devices(machine, selector),
+                      Contains(selector) && Contains("3:0") && Contains(" 8;"));
   }
   for (const char* selector : {"cpu/0", "cpu=", "cpu=1+", "cpu=-1", "cpu/9999999999", "cpu/x"}) {
     INFO(selector);
-    CHECK_THROWS_WITH(select_devices(machine, selector), Catch::Contains("matches no"));
+    CHECK_THROWS_WITH(select_devices(machine, selector), Contains("matches no"));
   }
 }
 
 TEST_CASE("a device named twice, and a comma without a device, are refused") {
   CHECK_THROWS_WITH(select_devices(machine, "2:0,gpu,xeon"),
-                    Catch::Contains("2:0 Xeon twice") && Catch::Contains("once"));
-  CHECK_THROWS_WITH(select_devices(machine, "cpu=1,cpu=1"), Catch::Contains("twice"));
+                    Contains("2:0 Xeon twice") && Contains("once"));
+  CHECK_THROWS_WITH(select_devices(machine, "cpu=1,cpu=1"), Contains("twice"));
   for (const char* selector : {"gpu,", ",gpu", "cpu,,gpu", ","}) {
     INFO(selector);
-    CHECK_THROWS_WITH(select_devices(machine, selector), Catch::Contains("comma"));
+    CHECK_THROWS_WITH(select_devices(machine, selector), Contains("comma"));
   }
 }
 
 TEST_CASE("a selector without a match lists the devices and its source") {
   for (const char* selector : {"radeon", "6", "1:7", "99999999999999999999999"}) {
     INFO(selector);
-    CHECK_THROWS_WITH(select_devices(machine, selector),
-                      Catch::Contains(selector) && Catch::Contains("3:0 pthread-skylake") &&
-                          Catch::Contains("4:1 GeForce 2"));
+    CHECK_THROWS_WITH(select_devices(machine, selector), Contains(selector) &&
+                                                             Contains("3:0 pthread-skylake") &&
+                                                             Contains("4:1 GeForce 2"));
   }
   const Variable variable("radeon");
-  CHECK_THROWS_WITH(select_devices(machine, ""), Catch::Contains("PHOTILE_DEVICE 'radeon'"));
+  CHECK_THROWS_WITH(select_devices(machine, ""), Contains("PHOTILE_DEVICE 'radeon'"));
 }
 
 TEST_CASE("without devices the message says what to install and what was left out") {
-  CHECK_THROWS_WITH(select_devices({}, "gpu"), Catch::Contains("no OpenCL runtime is installed") &&
-                                                   Catch::Contains("pocl-opencl-icd"));
+  CHECK_THROWS_WITH(select_devices({}, "gpu"),
+                    Contains("no OpenCL runtime is installed") && Contains("pocl-opencl-icd"));
   const std::vector<std::string> left_out = {"rusticl: has no devices"};
-  CHECK_THROWS_WITH(select_devices({}, "", left_out), Catch::Contains("rusticl: has no devices"));
-  CHECK_THROWS_AS(select_devices({}, ""), photile::DeviceError);
+  CHECK_THROWS_WITH(select_devices({}, "", left_out), Contains("rusticl: has no devices"));
+  CHECK_THROWS_AS(select_devices({}, ""), DeviceError);
 }
 
 TEST_CASE("every listed device can be opened by its id") {
-  const auto devices = photile::list_devices();
+  const auto devices = list_devices();
   REQUIRE_FALSE(devices.empty());
   for (const auto& info : devices) {
     INFO(info.id << ' ' << info.name);
-    const photile::Device device({info.id, true, false});
+    const Device device({info.id, true, false});
     CHECK(device.info().id == info.id);
     CHECK(device.info().max_allocation_bytes > 0);
     CHECK(device.info().global_memory_bytes >= device.info().max_allocation_bytes);
@@ -233,8 +230,7 @@ TEST_CASE("one part of a device leaves the rest of it alone") {
 }
 
 TEST_CASE("several devices are refused where one is needed") {
-  CHECK_THROWS_WITH(Device({.selector = "/2"}),
-                    Catch::Contains("2 devices are selected (0:0.0, 0:0.1)"));
+  CHECK_THROWS_WITH(Device({.selector = "/2"}), Contains("2 devices are selected (0:0.0, 0:0.1)"));
 }
 
 TEST_CASE("two sub-devices compute at once, compiling the same program") {

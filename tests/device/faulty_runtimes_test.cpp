@@ -12,7 +12,8 @@
 namespace photile::test {
 namespace {
 
-using photile::device::Context;
+using Catch::Contains;
+using device::Context;
 
 // Each OpenCL call that the probe makes fails in turn.
 
@@ -63,9 +64,8 @@ TEST_CASE("a failing OpenCL call ends in one message and the device exit code") 
       const auto result = run_child({PHOTILE_DEVICE_PROBE, "run"}, failing(failure, at, on, ""));
       INFO("call " << at << ": " << result.errors);
       CHECK(result.exit_code == 4);
-      CHECK_THAT(result.errors,
-                 Catch::Contains(failure.call) || Catch::Contains("test/squares.cl"));
-      CHECK_THAT(result.errors, Catch::Contains(failure.name));
+      CHECK_THAT(result.errors, Contains(failure.call) || Contains("test/squares.cl"));
+      CHECK_THAT(result.errors, Contains(failure.name));
       CHECK(std::count(result.errors.begin(), result.errors.end(), '\n') == 1);
     }
   }
@@ -90,7 +90,7 @@ TEST_CASE("a failing clFinish is reported where a result depends on it, and igno
   REQUIRE(calls >= 2);
   const auto first = run_child({PHOTILE_DEVICE_PROBE, "run"}, failing(failure, 1, false, ""));
   CHECK(first.exit_code == 4);
-  CHECK_THAT(first.errors, Catch::Contains("clFinish failed: CL_INVALID_COMMAND_QUEUE (-36)"));
+  CHECK_THAT(first.errors, Contains("clFinish failed: CL_INVALID_COMMAND_QUEUE (-36)"));
   const auto last = run_child({PHOTILE_DEVICE_PROBE, "run"}, failing(failure, calls, false, ""));
   CHECK(last.exit_code == 0);
 }
@@ -99,8 +99,8 @@ TEST_CASE("a launch that runs out of memory says what the device has and what to
   const Failure failure{"clEnqueueNDRangeKernel", -4, "CL_MEM_OBJECT_ALLOCATION_FAILURE"};
   const auto result = run_child({PHOTILE_DEVICE_PROBE, "run"}, failing(failure, 1, true, ""));
   CHECK(result.exit_code == 4);
-  CHECK_THAT(result.errors, Catch::Contains("'squares'") && Catch::Contains("4000 are in use") &&
-                                Catch::Contains("use fewer photons"));
+  CHECK_THAT(result.errors,
+             Contains("'squares'") && Contains("4000 are in use") && Contains("use fewer photons"));
 }
 
 ChildResult probe(const char* mode, bool fence, const char* kind = "page") {
@@ -119,8 +119,8 @@ TEST_CASE("a correct kernel gives the same results behind the fence") {
   CHECK(plain.exit_code == 0);
   CHECK(fenced.exit_code == 0);
   // The sum of i^2 for i < 1000 is 999 * 1000 * 1999 / 6.
-  CHECK_THAT(plain.output, Catch::Contains("last=998001 sum=332833500"));
-  CHECK_THAT(fenced.output, Catch::Contains("last=998001 sum=332833500"));
+  CHECK_THAT(plain.output, Contains("last=998001 sum=332833500"));
+  CHECK_THAT(fenced.output, Contains("last=998001 sum=332833500"));
 }
 
 TEST_CASE("a kernel that writes one element past the end dies at the fence") {
@@ -129,17 +129,17 @@ TEST_CASE("a kernel that writes one element past the end dies at the fence") {
 
 TEST_CASE("what no kernel wrote shows behind the fence") {
   const char* kind = GENERATE("page", "guard");
-  CHECK_THAT(probe("unwritten", true, kind).output, Catch::Contains("last=-1 "));
+  CHECK_THAT(probe("unwritten", true, kind).output, Contains("last=-1 "));
 }
 
 TEST_CASE("a kernel that writes beyond its buffer is told where guards stand in place of pages") {
-  CHECK_THAT(probe("run", true, "guard").output, Catch::Contains("last=998001 sum=332833500"));
+  CHECK_THAT(probe("run", true, "guard").output, Contains("last=998001 sum=332833500"));
   const auto [mode, where] =
       GENERATE(table<const char*, const char*>({{"overrun", "wrote behind a buffer of 4000"},
                                                 {"underrun", "wrote before a buffer of 4000"}}));
   const ChildResult result = probe(mode, true, "guard");
   CHECK(result.signal == SIGABRT);
-  CHECK_THAT(result.errors, Catch::Contains(where));
+  CHECK_THAT(result.errors, Contains(where));
 }
 
 // Machines without OpenCL, or with runtimes that offer nothing.
@@ -152,7 +152,7 @@ ChildResult probe_vendors(const std::filesystem::path& vendors, ChildEnvironment
 void check_one_device_error(const ChildResult& result, const char* text) {
   INFO(result.errors);
   CHECK(result.exit_code == 4);
-  CHECK_THAT(result.errors, Catch::Contains(text) && Catch::Contains("pocl-opencl-icd"));
+  CHECK_THAT(result.errors, Contains(text) && Contains("pocl-opencl-icd"));
   CHECK(std::count(result.errors.begin(), result.errors.end(), '\n') == 1);
 }
 
@@ -181,11 +181,11 @@ TEST_CASE("an absurd allocation says what, how much, the limits and a remedy") {
   try {
     context.allocate<float>(1ull << 50, "photon references");
     FAIL("allocated");
-  } catch (const photile::DeviceError& error) {
-    CHECK_THAT(error.what(), Catch::Contains("photon references"));
-    CHECK_THAT(error.what(), Catch::Contains("1125899906842624 x 4 bytes"));
-    CHECK_THAT(error.what(), Catch::Contains(limit));
-    CHECK_THAT(error.what(), Catch::Contains("fewer photons"));
+  } catch (const DeviceError& error) {
+    CHECK_THAT(error.what(), Contains("photon references"));
+    CHECK_THAT(error.what(), Contains("1125899906842624 x 4 bytes"));
+    CHECK_THAT(error.what(), Contains(limit));
+    CHECK_THAT(error.what(), Contains("fewer photons"));
     CHECK(error.status == -61);  // CL_INVALID_BUFFER_SIZE
   }
   CHECK(context.allocated_bytes() == 0);
@@ -193,11 +193,11 @@ TEST_CASE("an absurd allocation says what, how much, the limits and a remedy") {
 
 TEST_CASE("a size whose bytes overflow 64 bits is refused, not wrapped") {
   Context context({});
-  CHECK_THROWS_AS(context.allocate<double>(1ull << 62, "wrap"), photile::DeviceError);
+  CHECK_THROWS_AS(context.allocate<double>(1ull << 62, "wrap"), DeviceError);
 }
 
 TEST_CASE("status codes have names") {
-  using photile::device::status_name;
+  using device::status_name;
   CHECK(status_name(0) == "CL_SUCCESS (0)");
   CHECK(status_name(-5) == "CL_OUT_OF_RESOURCES (-5)");
   CHECK(status_name(-1001) == "CL_PLATFORM_NOT_FOUND_KHR (-1001)");

@@ -5,8 +5,6 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <set>
 
 #include "child_process.hpp"
@@ -14,25 +12,32 @@
 #include "device/kernel_store.hpp"
 #include "file_bytes.hpp"
 #include "photile/errors.hpp"
-#include "probe_output.hpp"
 #include "temporary_folder.hpp"
 
 namespace photile::test {
 namespace {
 
-using photile::DeviceInfo;
-using photile::device::program_key;
+namespace fs = std::filesystem;
+using device::CacheKey;
+using device::program_key;
+using device::read_checked_file;
+using device::write_checked_file;
 
-photile::device::CacheKey key_of(const std::string& text) {
-  photile::ContentHash hash;
+// What photile_device_probe prints when it runs its kernel.
+
+/// 999^2, and the sum of i^2 for i < 1000.
+const std::string right = "last=998001 sum=332833500";
+const std::string compiled = right + " built=1 cached=0\n";
+const std::string restored = right + " built=0 cached=1\n";
+
+CacheKey key_of(const std::string& text) {
+  ContentHash hash;
   hash.add(text);
   return hash.digest();
 }
 
 // Compiled kernels between processes, on Oclgrind's simulator: every runtime but PoCL is treated
 // so.
-
-namespace fs = std::filesystem;
 
 /// A machine whose only runtime is the simulator, with a cache of its own.
 struct Simulator {
@@ -99,8 +104,6 @@ TEST_CASE("kernels compiled at the installation are read where the user has none
 }
 
 // PoCL's compiled kernels between processes: PoCL itself aborts on a damaged cache.
-
-namespace fs = std::filesystem;
 
 ChildEnvironment cache_in(const fs::path& folder) {
   return {{"XDG_CACHE_HOME", folder.string()},
@@ -248,8 +251,6 @@ TEST_CASE("without the cache nothing is read and nothing is kept") {
 
 // Where PoCL's compiled kernels go when the usual folder cannot be used: PoCL itself aborts.
 
-namespace fs = std::filesystem;
-
 ChildResult probe(ChildEnvironment environment) {
   environment["PHOTILE_DEVICE"] = "Portable Computing Language";
   environment.try_emplace("POCL_CACHE_DIR", std::nullopt);
@@ -273,8 +274,7 @@ TEST_CASE("HOME may have blanks and quotes in its path, and the cache works ther
   const auto home = folder.path / "a user's \"home\" folder";
   fs::create_directory(home);
   check_right_and_silent(probe({{"HOME", home.string()}}));
-  const auto again = probe({{"HOME", home.string()}});
-  CHECK(again.output == right + " built=0 cached=1\n");
+  CHECK(probe({{"HOME", home.string()}}).output == restored);
   CHECK(fs::exists(home / ".cache" / "photile" / "kernels"));
 }
 
@@ -313,9 +313,9 @@ TEST_CASE("a folder of the user's that PoCL would abort on is replaced, with one
 
 TEST_CASE("a folder is refused with the reason") {
   const TemporaryFolder folder;
-  CHECK(photile::device::folder_problem(folder.path / "new" / "folder").empty());
-  CHECK_FALSE(photile::device::folder_problem("/dev/null/x").empty());
-  CHECK_FALSE(photile::device::folder_problem("/proc/x").empty());
+  CHECK(device::folder_problem(folder.path / "new" / "folder").empty());
+  CHECK_FALSE(device::folder_problem("/dev/null/x").empty());
+  CHECK_FALSE(device::folder_problem("/proc/x").empty());
 }
 
 DeviceInfo device() {
@@ -374,13 +374,8 @@ TEST_CASE("Code generation variables of PoCL and of Intel's runtime are in their
 }
 
 TEST_CASE("a hash is XXH3-128 as its specification gives it for the empty text") {
-  CHECK(photile::hex(photile::ContentHash().digest()) == "99aa06d3014798d86001c324468d497f");
+  CHECK(hex(ContentHash().digest()) == "99aa06d3014798d86001c324468d497f");
 }
-
-namespace fs = std::filesystem;
-using photile::device::CacheKey;
-using photile::device::read_checked_file;
-using photile::device::write_checked_file;
 
 const CacheKey key = key_of("the key");
 const std::string payload("binary \0 payload \xff", 18);
@@ -413,8 +408,7 @@ TEST_CASE("a folder or a FIFO in place of a checked file is a miss and does not 
   CHECK_FALSE(read_checked_file(folder.path, key).payload);
   REQUIRE(::mkfifo((folder.path / "fifo").c_str(), 0600) == 0);
   CHECK_FALSE(read_checked_file(folder.path / "fifo", key).payload);
-  CHECK_THROWS_AS(write_checked_file(folder.path / "no" / "entry", key, payload),
-                  photile::OutputError);
+  CHECK_THROWS_AS(write_checked_file(folder.path / "no" / "entry", key, payload), OutputError);
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // Kernels: their source, arguments and launches.
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <iterator>
 #include <numeric>
 
 #include "command/command_line.hpp"
@@ -15,13 +13,14 @@
 namespace photile::test {
 namespace {
 
+using Catch::Contains;
+using device::assemble_source;
+using device::Context;
+using device::Defines;
+using device::Launch;
+using device::LocalMemory;
 using device::next_launch;
-using photile::device::assemble_source;
-using photile::device::Context;
-using photile::device::Defines;
-using photile::device::Launch;
-using photile::device::LocalMemory;
-using photile::device::register_kernel_source;
+using device::register_kernel_source;
 
 const char* const affine = R"(
 kernel void affine(global const int* in, global int* out, const uint n, const int factor) {
@@ -31,21 +30,20 @@ kernel void affine(global const int* in, global int* out, const uint n, const in
 )";
 
 /// A launch of `affine` with all its arguments.
-Launch affine_launch(Context& context, const photile::device::Kernel& kernel,
-                     const photile::device::Buffer<int>& in,
-                     const photile::device::Buffer<int>& out, unsigned n, int factor) {
+Launch affine_launch(Context& context, const device::Kernel& kernel, const device::Buffer<int>& in,
+                     const device::Buffer<int>& out, unsigned n, int factor) {
   Launch launch(context, kernel);
   // Not in the order of the source.
   launch.set("factor", factor).set("n", n).set("out", out).set("in", in);
   return launch;
 }
 
-photile::DeviceOptions options(bool use_program_cache, bool profile) {
+DeviceOptions options(bool use_program_cache, bool profile) {
   return {"", use_program_cache, profile};
 }
 
 TEST_CASE("a kernel gets buffers, values and definitions") {
-  photile::device::register_kernel_source("test/affine.cl", affine);
+  device::register_kernel_source("test/affine.cl", affine);
   Context context({});
   std::vector<int> values(1000);
   std::iota(values.begin(), values.end(), -500);
@@ -60,7 +58,7 @@ TEST_CASE("a kernel gets buffers, values and definitions") {
 }
 
 TEST_CASE("one program is built per file and definitions") {
-  photile::device::register_kernel_source("test/affine.cl", affine);
+  device::register_kernel_source("test/affine.cl", affine);
   Context context(options(false, false));
   context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 1ll));
   context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 1ll));
@@ -75,7 +73,7 @@ TEST_CASE("one program is built per file and definitions") {
 }
 
 TEST_CASE("local memory has the size asked for") {
-  photile::device::register_kernel_source("test/local.cl", R"(
+  device::register_kernel_source("test/local.cl", R"(
 kernel void reverse(global int* values, local int* shared) {
   const size_t l = get_local_id(0), n = get_local_size(0), first = get_group_id(0) * n;
   shared[l] = values[first + l];
@@ -97,7 +95,7 @@ kernel void reverse(global int* values, local int* shared) {
 }
 
 TEST_CASE("launches over nothing enqueue nothing, and an empty buffer is a valid argument") {
-  photile::device::register_kernel_source("test/affine.cl", affine);
+  device::register_kernel_source("test/affine.cl", affine);
   Context context(options(true, true));
   const auto kernel = context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 0ll));
   const auto empty = context.allocate<int>(0, "empty");
@@ -130,7 +128,7 @@ TEST_CASE("writes and reads are timed apart from kernels, where times are kept")
 }
 
 TEST_CASE("what a kernel needs before its first launch is counted once") {
-  photile::device::register_kernel_source("test/affine.cl", affine);
+  device::register_kernel_source("test/affine.cl", affine);
   Context context(options(true, true));
   const auto kernel = context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 5ll));
   const auto empty = context.allocate<int>(0, "empty");
@@ -145,23 +143,22 @@ TEST_CASE("what a kernel needs before its first launch is counted once") {
 }
 
 TEST_CASE("an unknown argument and one that is not given are refused by kernel and name") {
-  photile::device::register_kernel_source("test/affine.cl", affine);
+  device::register_kernel_source("test/affine.cl", affine);
   Context context({});
   const auto kernel = context.kernel("test/affine.cl", "affine", Defines().set("OFFSET", 0ll));
   const auto buffer = context.allocate<int>(1, "values");
   CHECK_THROWS_WITH(Launch(context, kernel).set("input", buffer),
-                    Catch::Contains("kernel 'affine' has no argument 'input'"));
+                    Contains("kernel 'affine' has no argument 'input'"));
   // Complete launches leave nothing behind that a later one could be run with.
   affine_launch(context, kernel, buffer, buffer, 1, 1).run(1, 0);
   Launch launch(context, kernel);
   launch.set("in", buffer).set("out", buffer).set("factor", 1);
-  CHECK_THROWS_WITH(launch.run(1, 0),
-                    Catch::Contains("kernel 'affine' is not given its argument 'n'"));
+  CHECK_THROWS_WITH(launch.run(1, 0), Contains("kernel 'affine' is not given its argument 'n'"));
   launch.set("n", 1u).run(1, 0);
 }
 
 TEST_CASE("arguments have names where macros give them, and in programs from the cache") {
-  photile::device::register_kernel_source("test/macro.cl", R"(
+  device::register_kernel_source("test/macro.cl", R"(
 #define MORE_ARGUMENTS const uint n, \
   global const float* restrict from
 kernel void copy(global float* to, MORE_ARGUMENTS) {
@@ -185,37 +182,37 @@ kernel void copy(global float* to, MORE_ARGUMENTS) {
 }
 
 TEST_CASE("an argument of the wrong size and an unknown kernel are device errors") {
-  photile::device::register_kernel_source("test/affine.cl", affine);
+  device::register_kernel_source("test/affine.cl", affine);
   Context context({});
   const auto defines = Defines().set("OFFSET", 0ll);
   const auto kernel = context.kernel("test/affine.cl", "affine", defines);
   const auto buffer = context.allocate<int>(1, "values");
   CHECK_THROWS_WITH(Launch(context, kernel).set("n", 1.0),
-                    Catch::Contains("CL_INVALID_ARG_SIZE") && Catch::Contains("argument 'n'"));
+                    Contains("CL_INVALID_ARG_SIZE") && Contains("argument 'n'"));
   CHECK_THROWS_WITH(context.kernel("test/affine.cl", "missing", defines),
-                    Catch::Contains("CL_INVALID_KERNEL_NAME") && Catch::Contains("missing"));
+                    Contains("CL_INVALID_KERNEL_NAME") && Contains("missing"));
 }
 
 TEST_CASE("a build error names file and line and carries the log") {
-  photile::device::register_kernel_source("test/included.clh",
-                                          "int good(void) { return 1; }\n"
-                                          "int bad(void) { return undeclared_name; }\n");
-  photile::device::register_kernel_source("test/broken.cl",
-                                          "// a comment\n#include \"test/included.clh\"\n"
-                                          "kernel void k(global int* a) { a[0] = bad(); }\n");
+  device::register_kernel_source("test/included.clh",
+                                 "int good(void) { return 1; }\n"
+                                 "int bad(void) { return undeclared_name; }\n");
+  device::register_kernel_source("test/broken.cl",
+                                 "// a comment\n#include \"test/included.clh\"\n"
+                                 "kernel void k(global int* a) { a[0] = bad(); }\n");
   Context context({});
   try {
     context.kernel("test/broken.cl", "k", {});
     FAIL("built");
-  } catch (const photile::KernelBuildError& error) {
-    CHECK_THAT(error.what(), Catch::Contains("test/broken.cl"));
-    CHECK_THAT(error.what(), !Catch::Contains("\n"));
-    CHECK_THAT(error.build_log, Catch::Contains("undeclared_name"));
+  } catch (const KernelBuildError& error) {
+    CHECK_THAT(error.what(), Contains("test/broken.cl"));
+    CHECK_THAT(error.what(), !Contains("\n"));
+    CHECK_THAT(error.build_log, Contains("undeclared_name"));
     // Oclgrind's compiler does not follow #line.
     if (context.info().platform != "Oclgrind") {
-      CHECK_THAT(error.build_log, Catch::Contains("test/included.clh:2"));
+      CHECK_THAT(error.build_log, Contains("test/included.clh:2"));
     }
-    CHECK(photile::app::exit_code_of(error) == photile::app::ExitCode::device);
+    CHECK(app::exit_code_of(error) == app::ExitCode::device);
   }
 }
 
@@ -224,7 +221,7 @@ TEST_CASE("definitions become options that round-trip") {
         "-D K=50 -D FLAG=1 -D X=0.1f -D ONE=1.0f");
   CHECK(Defines().set("N", -3ll).options() == "-D N=-3");
   CHECK(Defines().options().empty());
-  CHECK_THROWS_AS(Defines().set("X", 1e300), photile::DeviceError);
+  CHECK_THROWS_AS(Defines().set("X", 1e300), DeviceError);
 }
 
 TEST_CASE("includes are resolved once each, with line markers") {
@@ -253,21 +250,21 @@ TEST_CASE("a classic guard may stand around includes") {
                          "#include \"source/guarded.h\"\n#include \"source/guarded.h\"\n"
                          "#include \"source/value2.h\"\n"
                          "kernel void k(global int* out) { *out = value2; }\n");
-  photile::device::Context context({});
+  device::Context context({});
   CHECK_NOTHROW(context.kernel("source/guards.cl", "k", {}));
 }
 
 TEST_CASE("an unknown include names itself and its includer") {
   register_kernel_source("source/d.cl", "\n#include \"source/nowhere.clh\"\n");
-  CHECK_THROWS_WITH(assemble_source("source/d.cl"), Catch::Contains("'source/nowhere.clh'") &&
-                                                        Catch::Contains("'source/d.cl' line 2"));
-  CHECK_THROWS_AS(assemble_source("source/none.cl"), photile::KernelBuildError);
+  CHECK_THROWS_WITH(assemble_source("source/d.cl"),
+                    Contains("'source/nowhere.clh'") && Contains("'source/d.cl' line 2"));
+  CHECK_THROWS_AS(assemble_source("source/none.cl"), KernelBuildError);
 }
 
 TEST_CASE("files that include each other end") {
   register_kernel_source("source/e.cl", "#include \"source/f.clh\"\ne\n");
   register_kernel_source("source/f.clh", "#include \"source/e.cl\"\nf\n");
-  CHECK_THAT(assemble_source("source/e.cl"), Catch::Contains("\ne\n") && Catch::Contains("\nf\n"));
+  CHECK_THAT(assemble_source("source/e.cl"), Contains("\ne\n") && Contains("\nf\n"));
 }
 
 TEST_CASE("every kernel but those of benches, and every shared header, is embedded byte for byte") {
@@ -282,7 +279,7 @@ TEST_CASE("every kernel but those of benches, and every shared header, is embedd
       const std::string text = photile::test::bytes_of(entry.path());
       const auto name = std::filesystem::relative(entry.path(), base).string();
       bool found = false;
-      for (const auto& embedded : photile::device::embedded_files()) {
+      for (const auto& embedded : device::embedded_files()) {
         if (embedded.path == name) found = embedded.text == text;
       }
       INFO(name);
@@ -291,7 +288,7 @@ TEST_CASE("every kernel but those of benches, and every shared header, is embedd
   };
   compare(root / "kernels", root / "kernels");
   compare(root / "include/photile/device", root / "include");
-  CHECK(count == photile::device::embedded_files().size());
+  CHECK(count == device::embedded_files().size());
 }
 
 // Launches cut by their measured time.

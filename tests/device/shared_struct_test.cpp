@@ -54,10 +54,10 @@ TEST_CASE(
     "every shared struct has the same size and members at the same places on host and device") {
   const std::vector<LayoutNumber> numbers = layout_numbers();
   REQUIRE(numbers.size() > 40);
-  photile::device::register_kernel_source("test/layout.cl", source_of(numbers));
-  photile::device::Context context({});
+  device::register_kernel_source("test/layout.cl", source_of(numbers));
+  device::Context context({});
   auto out = context.allocate<unsigned>(numbers.size(), "layout");
-  photile::device::Launch(context, context.kernel("test/layout.cl", "layout", {}))
+  device::Launch(context, context.kernel("test/layout.cl", "layout", {}))
       .set("out", out)
       .run_no_more(1, 1);
   std::vector<unsigned> on_device(numbers.size());

@@ -2,7 +2,6 @@
 // to another. Photons land where light would, uniformly; each mean is over 16 sets of photons.
 #include <catch2/catch.hpp>
 #include <functional>
-#include <glm/gtc/constants.hpp>
 
 #include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
@@ -32,7 +31,7 @@ Photons photons_on(const Scene& scene, const Chosen& chosen, std::size_t count,
   Photons photons;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t s = sides[pick(random)];
-    test::add_photon(photons, scene, test::random_point(scene, triangle_of(s), random), s, random);
+    add_photon(photons, scene, random_point(scene, triangle_of(s), random), s, random);
   }
   photons.flux.assign(count, glm::vec3(static_cast<float>(total / static_cast<double>(count))));
   return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
@@ -62,20 +61,18 @@ double landed_on_seen(const Reading& reading, const Photons& photons) {
 /// Mean irradiance over the hits, one for each of 16 sets of photons.
 std::vector<double> readings(Reading reading) {
   std::vector<double> means;
-  reading.scene.lights.assign(1, test::point_light("lamp", glm::vec3(0.0f)));
+  reading.scene.lights.assign(1, point_light("lamp", glm::vec3(0.0f)));
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const Photons photons = photons_on(reading.scene, reading.lit, reading.photons, seed);
     const Photons points = photons_on(reading.scene, reading.seen, 6000, 100 + seed);
     PrimaryHits hits;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!reading.where(points.position[i])) continue;
-      hits.position.push_back(points.position[i]);
-      hits.oriented_face.push_back(points.oriented_face[i]);
-      hits.diffuse_albedo.emplace_back(0.5f);
+      add_grey_hit(hits, points.position[i], points.oriented_face[i]);
     }
     REQUIRE(hits.position.size() > 100);
     const PhotonMaps maps(
-        test::device(), reading.scene, photons,
+        device(), reading.scene, photons,
         find_map_groups(reading.scene, photons, MapMode::automatic, {reading.radius, 60}),
         {.radius = reading.radius});
     EstimateParameters parameters;
@@ -100,8 +97,8 @@ bool outwards(const Scene& scene, std::uint32_t s) {
 bool top(const Scene& scene, std::uint32_t s) { return upwards(scene, s) && outwards(scene, s); }
 
 Scene box(const glm::vec3& size, int cells) {
-  test::SceneBuilder builder;
-  builder.box(-0.5f * size, 0.5f * size, builder.add(test::diffuse(glm::vec3(0.5f))), false, cells);
+  SceneBuilder builder;
+  builder.box(-0.5f * size, 0.5f * size, builder.add(diffuse(0.5f)), false, cells);
   return builder.build();
 }
 
@@ -110,18 +107,18 @@ Scene box(const glm::vec3& size, int cells) {
 TEST_CASE("a uniformly lit plate reads 1 over all of it, borders and corners, for any triangles",
           "[long]") {
   for (const int cells : {1, 40}) {
-    const Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 1.0f, cells);
+    const Scene scene = plate(diffuse(0.5f), 1.0f, cells);
     CAPTURE(cells);
-    CHECK_VERDICT(test::mean_is(readings({scene, upwards, upwards}), 1.0, 0.01));
+    CHECK_VERDICT(mean_is(readings({scene, upwards, upwards}), 1.0, 0.01));
     const auto border = [](const glm::vec3& p) {
       return std::max(std::abs(p.x), std::abs(p.y)) > 0.48f;
     };
-    CHECK_VERDICT(test::mean_is(readings({scene, upwards, upwards, border}), 1.0, 0.06));
+    CHECK_VERDICT(mean_is(readings({scene, upwards, upwards, border}), 1.0, 0.06));
   }
 }
 
 TEST_CASE("whole discs read too little at the border of a plate") {
-  Reading reading{test::plate(test::diffuse(glm::vec3(0.5f)), 1.0f, 1), upwards, upwards};
+  Reading reading{plate(diffuse(0.5f), 1.0f, 1), upwards, upwards};
   reading.where = [](const glm::vec3& p) { return std::abs(p.x) > 0.49f; };
   reading.area = AreaMode::disc;
   for (const double mean : readings(reading)) CHECK(mean < 0.75);
@@ -130,14 +127,13 @@ TEST_CASE("whole discs read too little at the border of a plate") {
 TEST_CASE("thin plates of 1 to 20 mm read 1 on their faces: their insides count for nothing") {
   for (const float thickness : {0.001f, 0.005f, 0.02f}) {
     CAPTURE(thickness);
-    CHECK_VERDICT(
-        test::mean_is(readings({box({1.0f, 0.8f, thickness}, 4), outwards, top}), 1.0, 0.01));
+    CHECK_VERDICT(mean_is(readings({box({1.0f, 0.8f, thickness}, 4), outwards, top}), 1.0, 0.01));
   }
 }
 
 TEST_CASE("a curved shell of 5 mm, its inner side dark, reads 1", "[long][slow]") {
   // A cylinder of radius 20 cm and a smaller one within; on the outer one 1 lm/m2.
-  Scene scene = test::empty_scene();
+  Scene scene = empty_scene();
   constexpr int segments = 160;
   for (const float radius : {0.2f, 0.195f}) {
     const auto at = [&](int i, float z) {
@@ -147,8 +143,8 @@ TEST_CASE("a curved shell of 5 mm, its inner side dark, reads 1", "[long][slow]"
     for (int i = 0; i < segments; ++i) {
       for (int j = -40; j < 40; ++j) {
         const float low = 0.01f * static_cast<float>(j), high = 0.01f * static_cast<float>(j + 1);
-        test::add_triangle(scene, at(i, low), at(i + 1, low), at(i + 1, high));
-        test::add_triangle(scene, at(i, low), at(i + 1, high), at(i, high));
+        add_triangle(scene, at(i, low), at(i + 1, low), at(i + 1, high));
+        add_triangle(scene, at(i, low), at(i + 1, high), at(i, high));
       }
     }
   }
@@ -158,12 +154,12 @@ TEST_CASE("a curved shell of 5 mm, its inner side dark, reads 1", "[long][slow]"
   };
   // What lies within the radius r on a cylinder of radius R is larger than the disc by
   // (r / R)^2 / 16 at most: 0.3% for the radius of 4 cm here.
-  CHECK_VERDICT(test::mean_is(readings({scene, outer, outer}), 1.0, 0.015));
+  CHECK_VERDICT(mean_is(readings({scene, outer, outer}), 1.0, 0.015));
 }
 
 TEST_CASE("tiles on a floor read 1, in their middle and at the border of the floor") {
-  test::SceneBuilder builder;
-  const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, -0.001f}, {1, 0, 0}, {0, 1, 0}, 1, white);
   for (int i = 0; i < 10; ++i) {
     for (int j = 0; j < 10; ++j) {
@@ -171,7 +167,7 @@ TEST_CASE("tiles on a floor read 1, in their middle and at the border of the flo
                    {0.097f, 0, 0}, {0, 0.097f, 0}, 1, white);
     }
   }
-  builder.add(test::point_light("lamp", glm::vec3(0.0f)));
+  builder.add(point_light("lamp", glm::vec3(0.0f)));
   const Scene scene = builder.build();
   // Photons fall from above: on tiles, and on the floor in the joints between them.
   std::vector<double> means;
@@ -208,16 +204,14 @@ TEST_CASE("tiles on a floor read 1, in their middle and at the border of the flo
       const glm::vec3 p(x, y, joint ? -0.001f : 0.001f);
       const std::uint32_t s = lands(joint ? floor : tiles[index], p);
       if (i < count) {
-        test::add_photon(photons, scene, p, s, random);
+        add_photon(photons, scene, p, s, random);
       } else if (!joint) {
-        hits.position.push_back(p);
-        hits.oriented_face.push_back(s);
-        hits.diffuse_albedo.emplace_back(0.5f);
+        add_grey_hit(hits, p, s);
       }
     }
     photons.flux.assign(count, glm::vec3(1.0f / count));
     photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
-    const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {0.06, 60}),
+    const PhotonMaps maps(device(), scene, photons, find_neighbour_groups(scene, {0.06, 60}),
                           {.radius = 0.06});
     const LightTable estimates = Estimator(maps, scene, {}).estimate(hits);
     double sum = 0;
@@ -226,26 +220,25 @@ TEST_CASE("tiles on a floor read 1, in their middle and at the border of the flo
   }
   // Without the exposure of the floor below, and the bound by the whole disc, they read 0.5. Of the
   // floor 64 points say how much lies in the joints: 3% of its area at most.
-  CHECK_VERDICT(test::mean_is(means, 1.0, 0.04));
+  CHECK_VERDICT(mean_is(means, 1.0, 0.04));
 }
 
 TEST_CASE("layers that coincide count once") {
-  Scene scene = test::empty_scene();
+  Scene scene = empty_scene();
   for (int layer = 0; layer < 3; ++layer) {
-    test::add_plate(scene, {-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+    add_plate(scene, {-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, 4);
   }
   // Photons land on any of the layers: together 3 lm/m2 where each has 1.
-  CHECK_VERDICT(test::mean_is(readings({scene, upwards, upwards}), 3.0, 0.03));
+  CHECK_VERDICT(mean_is(readings({scene, upwards, upwards}), 3.0, 0.03));
 }
 
 TEST_CASE("overlapping layers of which one catches the light read what they catch") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, 1);
-  test::add_plate(scene, {-0.4f, -0.5f, 0}, {0.8f, 0, 0}, {0, 1, 0}, 3);
+  Scene scene = scene_of_plates({{{-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, 1},
+                                 {{-0.4f, -0.5f, 0}, {0.8f, 0, 0}, {0, 1, 0}, 3}});
   const auto first = [](const Scene& of, std::uint32_t s) {
     return upwards(of, s) && triangle_of(s) < 2;
   };
-  CHECK_VERDICT(test::mean_is(readings({scene, first, first}), 1.0, 0.01));
+  CHECK_VERDICT(mean_is(readings({scene, first, first}), 1.0, 0.01));
 }
 
 TEST_CASE("inconsistent winding changes no reading") {
@@ -253,13 +246,13 @@ TEST_CASE("inconsistent winding changes no reading") {
   for (std::size_t t = 0; t < scene.triangle_count(); t += 2) {
     std::swap(scene.triangles[t].y, scene.triangles[t].z);
   }
-  CHECK_VERDICT(test::mean_is(readings({scene, outwards, top}), 1.0, 0.01));
+  CHECK_VERDICT(mean_is(readings({scene, outwards, top}), 1.0, 0.01));
 }
 
 TEST_CASE("a bright table top does not bleed into a dark floor below, nor the floor into it") {
   // 5 cm apart, with a radius of 6 cm: the floor has half the irradiance of the table.
-  test::SceneBuilder builder;
-  const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0}, 2, white);
   builder.grid({-0.2f, -0.2f, 0.05f}, {0.4f, 0, 0}, {0, 0.4f, 0}, 2, white);
   Reading reading{builder.build(), upwards, upwards};
@@ -272,7 +265,7 @@ TEST_CASE("a bright table top does not bleed into a dark floor below, nor the fl
   reading.lit = [](const Scene& of, std::uint32_t s) {
     return upwards(of, s) && of.corners(triangle_of(s))[0].z > 0.04f;
   };
-  CHECK_VERDICT(test::mean_is(readings(reading), 1.0, 0.04));
+  CHECK_VERDICT(mean_is(readings(reading), 1.0, 0.04));
 }
 
 TEST_CASE("a uniformly lit plate reads its irradiance away from borders for any triangulation",
@@ -286,13 +279,12 @@ TEST_CASE("a uniformly lit plate reads its irradiance away from borders for any 
   // independent. The mean of all hits then has a deviation of 1 / sqrt(48 x 2680) = 0.28%; the bar
   // of 1% is 3.6 deviations wide.
   for (const int cells : {1, 2, 7, 22, 70}) {
-    Scene scene = test::empty_scene();
-    test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, cells);
-    Photons photons = test::uniform_photons(scene, count, 71, false);
+    Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, cells}});
+    Photons photons = uniform_photons(scene, count, 71, false);
     photons.flux.assign(count, glm::vec3(1.0f));
-    const PhotonMaps maps(test::device(), scene, photons,
-                          find_neighbour_groups(scene, {radius, 60}), {radius, 4});
-    const PrimaryHits all = test::uniform_hits(scene, 40'000, 72, false);
+    const PhotonMaps maps(device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
+                          {radius, 4});
+    const PrimaryHits all = uniform_hits(scene, 40'000, 72, false);
     const LightTable estimates = Estimator(maps, scene, {k, 0}).estimate(all);
     double sum = 0;
     std::size_t inner = 0;

@@ -18,12 +18,12 @@ namespace {
 /// the whole disc, where the clipped one is a tenth of that at least.
 constexpr double area_tolerance = 1e-3;
 
-test::ExpectedEstimates expected_clipped(const Scene& scene, const Photons& photons,
-                                         const SurfaceIndex& surface, const PrimaryHits& hits,
-                                         int k, double radius, DensityKernel kernel) {
+ExpectedEstimates expected_clipped(const Scene& scene, const Photons& photons,
+                                   const SurfaceIndex& surface, const PrimaryHits& hits, int k,
+                                   double radius, DensityKernel kernel) {
   const reference::ClippedArea area(scene, photons, surface, 60);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
-  test::ExpectedEstimates expected;
+  ExpectedEstimates expected;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     expected.push_back(oracle.irradiance(area, hits.position[i], hits.oriented_face[i], k,
                                          static_cast<float>(radius), kernel));
@@ -39,11 +39,11 @@ void check_clipped_to(const std::shared_ptr<const SurfaceIndex>& surface, const 
   const auto expected = expected_clipped(scene, photons, *surface, hits, k, radius, kernel);
   const NeighbourGroups groups = find_map_groups(scene, photons, mode, {radius, 60});
   for (const std::string_view structure : {"uniform-grid", "kdtree-3d"}) {
-    for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
+    for (const EstimateTuning& tuning : tunings_of(device().info())) {
       if (structure != "uniform-grid" && tuning.strategy != EstimateStrategy::select) {
         continue;
       }
-      const PhotonMaps maps = structures::build(structures::named(structure), test::device(), scene,
+      const PhotonMaps maps = structures::build(structures::named(structure), device(), scene,
                                                 photons, groups, {radius, 4});
       EstimateParameters parameters;
       parameters.neighbours = k;
@@ -51,10 +51,10 @@ void check_clipped_to(const std::shared_ptr<const SurfaceIndex>& surface, const 
       parameters.tuning = tuning;
       parameters.surface = surface;
       const LightTable estimates = Estimator(maps, scene, parameters).estimate(hits);
-      const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
+      const auto irradiance = by_light(estimates.irradiance, estimates, lights);
       REQUIRE(irradiance.size() == hits.size() * lights);
       CAPTURE(structure, name_of(tuning.strategy), name_of(kernel), k, radius, lights);
-      CHECK(test::worst_difference(irradiance, expected) <= area_tolerance);
+      CHECK(worst_difference(irradiance, expected) <= area_tolerance);
     }
   }
 }
@@ -76,7 +76,7 @@ void add_star(Scene& scene, const glm::vec3& centre, const glm::vec3& u, const g
         glm::two_pi<float>() * static_cast<float>(i % corners) / static_cast<float>(corners);
     return centre + (i % 2 == 0 ? 1.0f : 0.5f) * (std::cos(turn) * u + std::sin(turn) * v);
   };
-  for (int i = 0; i < corners; ++i) test::add_triangle(scene, centre, corner(i), corner(i + 1));
+  for (int i = 0; i < corners; ++i) add_triangle(scene, centre, corner(i), corner(i + 1));
 }
 
 /// One region round a slit from `centre` along `u`: the triangle above it has the whole edge, those
@@ -84,12 +84,12 @@ void add_star(Scene& scene, const glm::vec3& centre, const glm::vec3& u, const g
 void add_slit_and_needle(Scene& scene, const glm::vec3& centre, const glm::vec3& u,
                          const glm::vec3& v) {
   const auto at = [&](float x, float y) { return centre + x * u + y * v; };
-  test::add_triangle(scene, at(0, 0), at(1, 0), at(0.5f, 1));
-  test::add_triangle(scene, at(0, 0), at(0.5f, 1), at(-1, 0));
-  test::add_triangle(scene, at(0, 0), at(-1, 0), at(0.5f, -1));
-  test::add_triangle(scene, at(0, 0), at(0.5f, -1), at(0.4f, 0));
-  test::add_triangle(scene, at(0.4f, 0), at(0.5f, -1), at(1, 0));
-  test::add_triangle(scene, at(2, 0), at(3, 0), at(3, 0.1f));
+  add_triangle(scene, at(0, 0), at(1, 0), at(0.5f, 1));
+  add_triangle(scene, at(0, 0), at(0.5f, 1), at(-1, 0));
+  add_triangle(scene, at(0, 0), at(-1, 0), at(0.5f, -1));
+  add_triangle(scene, at(0, 0), at(0.5f, -1), at(0.4f, 0));
+  add_triangle(scene, at(0.4f, 0), at(0.5f, -1), at(1, 0));
+  add_triangle(scene, at(2, 0), at(3, 0), at(3, 0.1f));
 }
 
 /// Each corner of any triangle that lies on another one's border, as a hit on that one.
@@ -103,9 +103,7 @@ void add_hits_on_junctions(PrimaryHits& hits, const Scene& scene) {
         const double beside = glm::length(glm::cross(p - a, b - a)) / glm::length(b - a);
         const double along = glm::dot(p - a, b - a) / glm::dot(b - a, b - a);
         if (beside > 1e-5 || along < 0.01 || along > 0.99) continue;
-        hits.position.push_back(vertex);
-        hits.oriented_face.push_back(oriented(t, 0));
-        hits.diffuse_albedo.emplace_back(0.5f);
+        add_grey_hit(hits, vertex, oriented(t, 0));
       }
     }
   }
@@ -118,9 +116,8 @@ void add_hits_nearby(PrimaryHits& hits, const Scene& scene) {
     for (std::size_t i = 0; i < count; ++i) {
       const auto [a, b, c] = scene.corners(triangle_of(hits.oriented_face[i]));
       const glm::vec3 way = (a + b + c) / 3.0f - hits.position[i];
-      hits.position.push_back(hits.position[i] + static_cast<float>(length) * glm::normalize(way));
-      hits.oriented_face.push_back(hits.oriented_face[i]);
-      hits.diffuse_albedo.emplace_back(0.5f);
+      add_grey_hit(hits, hits.position[i] + static_cast<float>(length) * glm::normalize(way),
+                   hits.oriented_face[i]);
     }
   }
 }
@@ -133,9 +130,7 @@ PrimaryHits hits_on_vertices_and_edges(const Scene& scene) {
     for (int i = 0; i < 3; ++i) {
       const glm::vec3& corner = corners[i];
       for (const glm::vec3& position : {corner, 0.5f * (corner + corners[(i + 1) % 3])}) {
-        hits.position.push_back(position);
-        hits.oriented_face.push_back(oriented(t, 0));
-        hits.diffuse_albedo.emplace_back(0.5f);
+        add_grey_hit(hits, position, oriented(t, 0));
       }
     }
   }
@@ -146,10 +141,9 @@ PrimaryHits hits_on_vertices_and_edges(const Scene& scene) {
 
 TEST_CASE("clipped irradiance on plates of any triangulation equals the oracle's", "[long]") {
   for (const int cells : {1, 3, 40}) {
-    Scene scene = test::empty_scene();
-    test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, cells);
-    const Photons photons = test::uniform_photons(scene, 6000, 51);
-    const PrimaryHits hits = test::uniform_hits(scene, 300, 52);
+    Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, cells}});
+    const Photons photons = uniform_photons(scene, 6000, 51);
+    const PrimaryHits hits = uniform_hits(scene, 300, 52);
     for (const DensityKernel kernel : all_density_kernels) {
       if (cells != 3 && kernel != DensityKernel::constant) continue;
       check_clipped(scene, photons, hits, 0.2, 50, kernel);
@@ -162,21 +156,20 @@ TEST_CASE("clipped irradiance on plates of any triangulation equals the oracle's
 }
 
 TEST_CASE("clipped irradiance on vertices and edges to the last bit equals the oracle's") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, 1);
-  test::add_plate(scene, {3, 0, 1}, {0.8f, 0.1f, 0.3f}, {-0.2f, 0.9f, 0.1f}, 3);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, 1},
+                                 {{3, 0, 1}, {0.8f, 0.1f, 0.3f}, {-0.2f, 0.9f, 0.1f}, 3}});
   add_star(scene, {10, 20, 5}, {0.6f, 0.2f, 0.4f}, {0.1f, -0.7f, 0.3f}, 12);
-  const Photons photons = test::uniform_photons(scene, 12'000, 51);
+  const Photons photons = uniform_photons(scene, 12'000, 51);
   const DensityKernel kernel = GENERATE(from_range(all_density_kernels));
   check_clipped(scene, photons, hits_on_vertices_and_edges(scene), 0.2, 50, kernel);
 }
 
 TEST_CASE(
     "slits, T-junctions and needles are clipped as by the oracle, at and near their corners") {
-  Scene scene = test::empty_scene();
+  Scene scene = empty_scene();
   add_slit_and_needle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   add_slit_and_needle(scene, {10, 3, 5}, {0.6f, 0.2f, 0.4f}, {-0.4f, 0.3f, 0.45f});
-  const Photons photons = test::uniform_photons(scene, 12'000, 55);
+  const Photons photons = uniform_photons(scene, 12'000, 55);
   PrimaryHits hits = hits_on_vertices_and_edges(scene);
   add_hits_on_junctions(hits, scene);
   REQUIRE(hits.position.size() >= 2 * (6 * 6 + 1));
@@ -186,46 +179,45 @@ TEST_CASE(
 }
 
 TEST_CASE("clipped irradiance where surfaces bend out of the slab equals the oracle's", "[long]") {
-  Scene scene = test::empty_scene();
+  Scene scene = empty_scene();
   const glm::vec3 along(1, 0, 0);
-  test::add_plate(scene, {0, 0, 0}, along, {0, 1, 0}, 4);
+  add_plate(scene, {0, 0, 0}, along, {0, 1, 0}, 4);
   // 24 degrees up, in triangles of which a disc holds many whole.
-  test::add_plate(scene, {0, 1, 0}, along, {0, 0.9f, 0.4f}, 20);
-  test::add_plate(scene, {0, -0.6f, -0.8f}, along, {0, 0.6f, 0.8f}, 4);  // 53 degrees down
-  const Photons photons = test::uniform_photons(scene, 6'000, 57);
+  add_plate(scene, {0, 1, 0}, along, {0, 0.9f, 0.4f}, 20);
+  add_plate(scene, {0, -0.6f, -0.8f}, along, {0, 0.6f, 0.8f}, 4);  // 53 degrees down
+  const Photons photons = uniform_photons(scene, 6'000, 57);
   const DensityKernel kernel = GENERATE(from_range(all_density_kernels));
-  check_clipped(scene, photons, test::uniform_hits(scene, 150, 58), 0.3, 50, kernel);
+  check_clipped(scene, photons, uniform_hits(scene, 150, 58), 0.3, 50, kernel);
 }
 
 TEST_CASE("a panel all under a plate counts whole for hits on it, and as nothing for those above") {
-  Scene scene = test::empty_scene();
+  Scene scene = empty_scene();
   // No wider than two radii: looked at triangle by triangle, by its own hits, too.
-  test::add_plate(scene, {0, 0, 0}, {0.25f, 0, 0}, {0, 0.25f, 0}, 1);
-  test::add_plate(scene, {-0.1f, -0.1f, 0.01f}, {0.5f, 0, 0}, {0, 0.5f, 0}, 1);
-  const Photons photons = test::uniform_photons(scene, 1500, 61, false);
+  add_plate(scene, {0, 0, 0}, {0.25f, 0, 0}, {0, 0.25f, 0}, 1);
+  add_plate(scene, {-0.1f, -0.1f, 0.01f}, {0.5f, 0, 0}, {0, 0.5f, 0}, 1);
+  const Photons photons = uniform_photons(scene, 1500, 61, false);
   const SurfaceIndex surface = index_surface(scene, landed_on(scene, photons), 0.2, 60);
   REQUIRE(surface.region[0] == PHOTILE_NO_REGION);
   REQUIRE(surface.open_fraction[oriented(0, 0)] == 0.0f);
-  check_clipped(scene, photons, test::uniform_hits(scene, 100, 62, false), 0.2, 50,
+  check_clipped(scene, photons, uniform_hits(scene, 100, 62, false), 0.2, 50,
                 DensityKernel::constant);
 }
 
 TEST_CASE(
     "unlit regions of a floor are holes in it for hits on it and on a panel above, as by the "
     "oracle") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 1);
-  test::add_plate(scene, {0.5f, 0.5f, 0.02f}, {1, 0, 0}, {0.1f, 0.8f, 0}, 1);
+  Scene scene = scene_of_plates(
+      {{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 1}, {{0.5f, 0.5f, 0.02f}, {1, 0, 0}, {0.1f, 0.8f, 0}, 1}});
   Photons photons;
   std::mt19937_64 random(65);
-  const Photons everywhere = test::uniform_photons(scene, 20'000, 64, false);
+  const Photons everywhere = uniform_photons(scene, 20'000, 64, false);
   for (std::size_t i = 0; i < everywhere.size(); ++i) {
     const glm::vec3& p = everywhere.position[i];
     const bool is_covered = p.z == 0 && p.x > 0.5f && p.x < 1.6f && p.y > 0.5f && p.y < 1.3f;
-    if (!is_covered) test::add_photon(photons, scene, p, everywhere.oriented_face[i], random);
+    if (!is_covered) add_photon(photons, scene, p, everywhere.oriented_face[i], random);
   }
   photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
-  const PrimaryHits hits = test::uniform_hits(scene, 300, 66, false);
+  const PrimaryHits hits = uniform_hits(scene, 300, 66, false);
   const auto surface =
       std::make_shared<const SurfaceIndex>(index_surface(scene, photons, 0.15, 60));
   REQUIRE(surface->unlit_regions.size() >= 10);
@@ -243,7 +235,7 @@ TEST_CASE(
   Photons on_panel;
   for (std::size_t i = 0; i < photons.size(); ++i) {
     const glm::vec3& p = photons.position[i];
-    if (p.z > 0) test::add_photon(on_panel, scene, p, photons.oriented_face[i], random);
+    if (p.z > 0) add_photon(on_panel, scene, p, photons.oriented_face[i], random);
   }
   on_panel = sort_by_oriented_face(std::move(on_panel), 2 * scene.triangle_count());
   PrimaryHits hits_on_panel;
@@ -263,23 +255,22 @@ TEST_CASE("clipped irradiance on a torus equals the oracle's, coarse and fine, f
                                               {MapMode::patch, DensityKernel::constant},
                                               {MapMode::patch, DensityKernel::cone}}));
   for (const int rings : {24, 96}) {
-    Scene scene = test::empty_scene(2);
-    test::add_torus(scene, 1.0f, 0.4f, rings, rings / 2);
-    const Photons photons = test::uniform_photons(scene, 20'000, 53);
-    check_clipped(scene, photons, test::uniform_hits(scene, 200, 54), 0.3, 50, kernel, mode);
+    Scene scene = empty_scene(2);
+    add_torus(scene, 1.0f, 0.4f, rings, rings / 2);
+    const Photons photons = uniform_photons(scene, 20'000, 53);
+    check_clipped(scene, photons, uniform_hits(scene, 200, 54), 0.3, 50, kernel, mode);
   }
 }
 
 TEST_CASE("clipped irradiance in the living room equals the oracle's", "[slow]") {
-  Scene scene = load_scene(test::source_folder() / "scenes/living-room/living-room.gltf");
+  Scene scene = load_scene(source_folder() / "scenes/living-room/living-room.gltf");
   for (Material& material : scene.materials) {  // no lobes
     material.specular = glm::vec3(0.0f);
     material.normal_texture = none;
   }
-  const Photons photons = test::uniform_photons(scene, 60'000, 51);
+  const Photons photons = uniform_photons(scene, 60'000, 51);
   const DensityKernel kernel = GENERATE(from_range(all_density_kernels));
-  check_clipped(scene, photons, test::uniform_hits(scene, 300, 52), 0.4, 50, kernel,
-                MapMode::automatic);
+  check_clipped(scene, photons, uniform_hits(scene, 300, 52), 0.4, 50, kernel, MapMode::automatic);
 }
 
 }  // namespace photile::test

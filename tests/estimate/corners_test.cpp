@@ -3,17 +3,14 @@
 // on.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <filesystem>
 #include <numeric>
 #include <span>
 
 #include "oracle/clipped_area.hpp"
-#include "photile/estimator.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photon_sets.hpp"
 #include "shared_scenes.hpp"
 #include "skipped.hpp"
-#include "source_folder.hpp"
 #include "test_device.hpp"
 
 namespace photile::test {
@@ -106,14 +103,14 @@ class Shares {
   ///   radius   0 = automatic
   Shares(Scene scene, std::size_t photons, double radius = 0)
       : scene_(plain(std::move(scene))),
-        photons_(test::uniform_photons(scene_, photons, 161)),
+        photons_(uniform_photons(scene_, photons, 161)),
         radius_(radius > 0 ? radius : automatic_radius(photons_, k)) {
     photons_.flux.assign(photons_.size(), glm::vec3(1.0f));
     surface_ = std::make_shared<const SurfaceIndex>(
         index_surface(scene_, landed_on(scene_, photons_), radius_, 60));
     const NeighbourGroups groups =
         find_map_groups(scene_, photons_, MapMode::automatic, {radius_, 60});
-    maps_.emplace(test::device(), scene_, photons_, groups, PhotonMapParameters{.radius = radius_});
+    maps_.emplace(device(), scene_, photons_, groups, PhotonMapParameters{.radius = radius_});
     oracle_.emplace(scene_, photons_, *surface_, 60);
   }
 
@@ -200,9 +197,7 @@ Coverage check_shares(Scene scene, std::size_t photons, std::span<const std::uin
     const glm::dvec3 way = middle - glm::dvec3(test_point.position);
     for (const double step : steps) {
       const double part = std::min(step / glm::length(way), 1.0);
-      hits.position.emplace_back(glm::dvec3(test_point.position) + way * part);
-      hits.oriented_face.push_back(test_point.oriented_face);
-      hits.diffuse_albedo.emplace_back(0.5f);
+      add_grey_hit(hits, glm::dvec3(test_point.position) + way * part, test_point.oriented_face);
     }
   }
   hits.pixel.resize(hits.size());
@@ -246,8 +241,8 @@ void check_told(const Coverage& coverage) { CHECK(coverage.told > coverage.point
 
 /// Whether the shared scenes are there; else a warning.
 bool has_shared_scenes() {
-  if (std::filesystem::exists(test::shared_scenes_folder() / "odd")) return true;
-  test::skip("no shared scenes");
+  if (std::filesystem::exists(shared_scenes_folder() / "odd")) return true;
+  skip("no shared scenes");
   return false;
 }
 
@@ -256,8 +251,7 @@ bool has_shared_scenes() {
 TEST_CASE("areas at corners, edges and T-junctions of the bundled rooms are the oracle's") {
   const char* file = GENERATE("cornell-box/cornell-box.obj", "living-room/living-room.gltf");
   CAPTURE(file);
-  check_told(
-      check_some_shares(load_scene(test::source_folder() / "scenes" / file), 20'000, 40, 40));
+  check_told(check_some_shares(load_scene(source_folder() / "scenes" / file), 20'000, 40, 40));
 }
 
 TEST_CASE("hits a rounding beyond an edge or a corner count as on it, far off along any axis") {
@@ -268,15 +262,12 @@ TEST_CASE("hits a rounding beyond an edge or a corner count as on it, far off al
   corner[axis] = near;
   along[axis] = 1;
   across[(axis + 1) % 3] = 1;
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, corner, along, across, 1);
+  Scene scene = scene_of_plates({{corner, along, across, 1}});
   PrimaryHits hits;
   std::vector<double> expected;
   const auto add_hit = [&](float at, float beside, std::uint32_t triangle, double share) {
-    hits.position.push_back(beside * across);
+    add_grey_hit(hits, beside * across, oriented(triangle, 0));
     hits.position.back()[axis] = at;
-    hits.oriented_face.push_back(oriented(triangle, 0));
-    hits.diffuse_albedo.emplace_back(0.5f);
     expected.push_back(share);
   };
   for (const float at : {near, std::nextafter(near, 0.0f), std::nextafter(near, far)}) {
@@ -313,7 +304,7 @@ TEST_CASE("areas at corners, edges and T-junctions of every bundled scene are th
   SceneLoadOptions options;
   options.sun = Sun::parse("0,45,1000");  // where a scene has no light of its own
   options.ground = 0;
-  check_told(check_some_shares(load_scene(test::source_folder() / "scenes" / scene.file, options),
+  check_told(check_some_shares(load_scene(source_folder() / "scenes" / scene.file, options),
                                scene.photons, 400, 50));
 }
 
@@ -321,7 +312,7 @@ TEST_CASE("areas at corners, edges and T-junctions of every bundled scene are th
 TEST_CASE("areas at the corners of a level triangle in the kitchen are the oracle's", "[slow]") {
   if (!has_shared_scenes()) return;
   constexpr std::uint32_t level = 682;
-  const Scene kitchen = test::load_shared_scene({"kitchen/kitchen-diffuse.gltf", ""});
+  const Scene kitchen = load_shared_scene({"kitchen/kitchen-diffuse.gltf", ""});
   const auto corners = kitchen.corners(level);
   CAPTURE(corners[0].x, corners[0].y, corners[0].z);
   REQUIRE(std::any_of(corners.begin(), corners.end(), [](const glm::vec3& corner) {
@@ -335,17 +326,17 @@ TEST_CASE("areas at corners, edges and T-junctions of shared interiors are the o
   if (!has_shared_scenes()) return;
   const char* file = GENERATE("classroom/classroom-diffuse.gltf", "kitchen/kitchen-diffuse.gltf");
   CAPTURE(file);
-  check_told(check_some_shares(test::load_shared_scene({file, ""}), 400'000, 200, 100));
+  check_told(check_some_shares(load_shared_scene({file, ""}), 400'000, 200, 100));
 }
 
 TEST_CASE("areas at corners, edges and T-junctions of odd shared scenes are the oracle's",
           "[slow]") {
   if (!has_shared_scenes()) return;
   Coverage together;  // of some, which are a triangle or two, hardly any can be told
-  for (const test::SharedScene& scene : test::shared_scenes) {
+  for (const SharedScene& scene : shared_scenes) {
     if (!scene.refusal.empty() || !scene.file.starts_with("odd/")) continue;
     CAPTURE(scene.file);
-    const Coverage coverage = check_some_shares(test::load_shared_scene(scene), 10'000, 30, 5);
+    const Coverage coverage = check_some_shares(load_shared_scene(scene), 10'000, 30, 5);
     together.told += coverage.told;
     together.points += coverage.points;
   }

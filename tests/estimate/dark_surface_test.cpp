@@ -1,13 +1,9 @@
 // Even light on the open part of a plate, none on the rest: what reads 1, and what stays dark. All
 // readings are beside the closed form, 1 lm/m2 where light falls.
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <functional>
-#include <glm/gtc/constants.hpp>
 #include <memory>
 
-#include "photile/estimator.hpp"
 #include "photile/surface_index.hpp"
 #include "photon_sets.hpp"
 #include "test_device.hpp"
@@ -22,7 +18,7 @@ using Where = std::function<bool(const glm::vec3&)>;
 /// A plate of 1 x 1 m in the plane z = 0, and boxes on it.
 Scene plate_under(const std::vector<std::array<glm::vec3, 2>>& boxes, int cells = 1) {
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, cells, white);
   for (const auto& [low, high] : boxes) builder.box(low, high, white, false);
   builder.add(point_light("lamp", {0.5f, 0.5f, 2}));
@@ -110,9 +106,7 @@ Means means(const Scene& scene, const Where& open, const Where& seen, int neighb
     while (hits.position.size() < 1000) {
       const glm::vec3 p(place(random), place(random), 0.0f);
       if (!seen(p)) continue;
-      hits.position.push_back(p);
-      hits.oriented_face.push_back(upper_sides.at(p));
-      hits.diffuse_albedo.emplace_back(0.5f);
+      add_grey_hit(hits, p, upper_sides.at(p));
     }
     count += hits.position.size();
     SurfaceIndex whole = index_surface(scene, landed_on(scene, photons), widest, 60);
@@ -192,7 +186,7 @@ TEST_CASE("a panel reads 1 above surface that does not count and has parts where
   // A floor ends in the dark: first with triangles on which photons are missing, then with two that
   // are too small for any to be expected. A tile that lies in the same place counts before them.
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({2.05f, 0.05f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, 1, white);
   builder.grid({0, 0, 0}, {2, 0, 0}, {0, 1, 0}, 2, white);
   builder.grid({2, 0, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}, 1, white);
@@ -243,9 +237,7 @@ TEST_CASE("a panel reads 1 above surface that does not count and has parts where
   PrimaryHits hits;
   for (int i = 0; i < 2000; ++i) {
     const glm::vec3 p = point_of_panel();
-    hits.position.push_back(p);
-    hits.oriented_face.push_back(upper_side_at(p));
-    hits.diffuse_albedo.emplace_back(0.5f);
+    add_grey_hit(hits, p, upper_side_at(p));
   }
   const PhotonMaps maps(device(), scene, photons,
                         find_map_groups(scene, photons, MapMode::automatic, {radius, 60}),

@@ -4,10 +4,8 @@
 // over the clipped area have the mean N / A, and so do their weights by a kernel over its integral:
 // given the k-th the others are independent.
 #include <catch2/catch.hpp>
-#include <cmath>
 
 #include "oracle/kernel_weights.hpp"
-#include "photile/estimator.hpp"
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
@@ -34,7 +32,7 @@ double beta_probability(double u) {
 
 /// Many plates far apart, turned at random, each with its own photons: as many independent points.
 struct Plates {
-  Scene scene = test::empty_scene();
+  Scene scene = empty_scene();
   Photons photons;
   PrimaryHits hits;
 };
@@ -43,9 +41,9 @@ struct Plates {
 void add_piece(Scene& scene, const glm::vec3& corner, const glm::vec3& u, const glm::vec3& v,
                bool half, int cells) {
   if (half) {
-    test::add_triangle(scene, corner, corner + u, corner + v);
+    add_triangle(scene, corner, corner + u, corner + v);
   } else {
-    test::add_plate(scene, corner, u, v, cells);
+    add_plate(scene, corner, u, v, cells);
   }
 }
 
@@ -69,7 +67,7 @@ Plates make_plates(float s, float t, bool half) {
     for (int i = 0; i < photons_per_plate; ++i) {
       const std::uint32_t on =
           triangle + static_cast<std::uint32_t>(uniform(random) * static_cast<float>(count));
-      made.photons.position.push_back(test::random_point(made.scene, on, random));
+      made.photons.position.push_back(random_point(made.scene, on, random));
       made.photons.oriented_face.push_back(oriented(on, 0));
     }
     // The triangle that holds the point, or the nearest one.
@@ -87,9 +85,7 @@ Plates make_plates(float s, float t, bool half) {
       }
       if (outside < least) least = outside, nearest = on;
     }
-    made.hits.position.push_back(point);
-    made.hits.oriented_face.push_back(oriented(nearest, 0));
-    made.hits.diffuse_albedo.emplace_back(0.5f);
+    add_grey_hit(made.hits, point, oriented(nearest, 0));
   }
   const std::size_t count = made.photons.size();
   made.photons.flux.assign(count, glm::vec3(1.0f));
@@ -126,7 +122,7 @@ void check_law(float s, float t, bool half) {
   const double area = half ? 0.5 : 1.0;
   const NeighbourGroups groups =
       find_map_groups(data.scene, data.photons, MapMode::patch, {radius, 60});
-  const PhotonMaps maps(test::device(), data.scene, data.photons, groups, {.radius = radius});
+  const PhotonMaps maps(device(), data.scene, data.photons, groups, {.radius = radius});
   const auto readings = [&](DensityKernel kernel) {
     std::vector<double> values;
     EstimateParameters parameters{.neighbours = k, .kernel = kernel};

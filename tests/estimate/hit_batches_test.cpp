@@ -1,11 +1,10 @@
 // Hits in batches of any size.
-
-#include <catch2/catch.hpp>
 #include <cstring>
-#include <vector>
 
+#include "device/context.hpp"
 #include "estimate/hit_buffers.hpp"
 #include "neighbour_comparison.hpp"
+#include "photile/neighbour_groups.hpp"
 #include "photon_sets.hpp"
 #include "structures/structure.hpp"
 #include "test_device.hpp"
@@ -50,7 +49,7 @@ TEST_CASE("a batch takes a quarter of the memory and no buffer beyond the larges
 }
 
 TEST_CASE("work that fails for want of memory is repeated with half the hits, then stays so") {
-  HitBatches batches(device::context_of(test::device()));
+  HitBatches batches(device::context_of(device()));
   std::vector<std::pair<std::size_t, std::size_t>> done;
   int failures = 0;
   const auto work = [&](std::size_t first, std::size_t count) {
@@ -70,7 +69,7 @@ TEST_CASE("work that fails for want of memory is repeated with half the hits, th
 }
 
 TEST_CASE("a single hit that does not fit is an error") {
-  HitBatches batches(device::context_of(test::device()));
+  HitBatches batches(device::context_of(device()));
   CHECK_THROWS_AS(batches.run(7, one_light_needs,
                               [](std::size_t, std::size_t) { throw DeviceMemoryError("none"); }),
                   DeviceMemoryError);
@@ -78,11 +77,7 @@ TEST_CASE("a single hit that does not fit is an error") {
 
 // Numbers of photons and hits that fit no work-group, vector or batch.
 
-Scene plate() {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
-  return scene;
-}
+Scene plate() { return scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2}}); }
 
 /// `count` hits that repeat those of `base`, in their order.
 PrimaryHits repeat(const PrimaryHits& base, std::size_t count) {
@@ -97,13 +92,13 @@ PrimaryHits repeat(const PrimaryHits& base, std::size_t count) {
 
 TEST_CASE("a hit's estimate is the same bits, however many hits are estimated with it") {
   const Scene scene = plate();
-  const Photons photons = test::uniform_photons(scene, 4096, 81);
-  const PrimaryHits base = test::uniform_hits(scene, 93, 82);
+  const Photons photons = uniform_photons(scene, 4096, 81);
+  const PrimaryHits base = uniform_hits(scene, 93, 82);
   // The last one is more than a batch.
   const std::size_t count =
       GENERATE(0u, 1u, 7u, 63u, 64u, 65u, 93u, 4096u, (std::size_t{1} << 20) + 1);
   const PrimaryHits hits = repeat(base, count);
-  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {0.2, 60}),
+  const PhotonMaps maps(device(), scene, photons, find_neighbour_groups(scene, {0.2, 60}),
                         {0.2, 4});
   Estimator estimator(maps, scene, {16, 0});
   const LightTable expected = estimator.estimate(base);
@@ -119,22 +114,113 @@ TEST_CASE("a hit's estimate is the same bits, however many hits are estimated wi
 
 TEST_CASE("neighbours equal the oracle's among 2^20 + 1 photons") {
   const Scene scene = plate();
-  const Photons photons = test::uniform_photons(scene, (std::size_t{1} << 20) + 1, 83);
-  const PrimaryHits hits = test::uniform_hits(scene, 17, 84);
+  const Photons photons = uniform_photons(scene, (std::size_t{1} << 20) + 1, 83);
+  const PrimaryHits hits = uniform_hits(scene, 17, 84);
   const double radius = 0.05;
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   for (const structures::Structure& structure : structures::all()) {
     if (!structure.global && structure.name != "uniform-grid") continue;
     const PhotonMaps maps =
-        structures::build(structure, test::device(), scene, photons, groups, {radius, 4});
+        structures::build(structure, device(), scene, photons, groups, {radius, 4});
     for (const int k : {1, 50, 100'000}) {
       Estimator estimator(maps, scene, {k, 0});
       CAPTURE(structure.name, k);
-      CHECK(test::count_differences(hits, estimator.nearest(hits), oracle, photons,
-                                    static_cast<float>(radius)) == 0);
+      CHECK(count_differences(hits, estimator.nearest(hits), oracle, photons,
+                              static_cast<float>(radius)) == 0);
     }
   }
+}
+
+// Memory of batches that is kept from call to call.
+
+constexpr double radius = 0.2;
+
+/// Two plates 10 m apart.
+Scene two_plates() {
+  return scene_of_plates(
+      {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4}, {{10, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4}});
+}
+
+/// The photons of the first plate alone.
+Photons photons_on_one(const Scene& scene) {
+  Scene first = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4}});
+  Photons photons = uniform_photons(first, 5'000, 7);
+  photons.first_of.resize(2 * scene.triangle_count() + 1, photons.first_of.back());
+  return photons;
+}
+
+/// The hits that lie on the first plate, or on the second.
+PrimaryHits on_plate(const PrimaryHits& hits, bool second) {
+  PrimaryHits result;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if ((hits.position[i].x > 5) != second) continue;
+    result.position.push_back(hits.position[i]);
+    result.oriented_face.push_back(hits.oriented_face[i]);
+    result.diffuse_albedo.push_back(hits.diffuse_albedo[i]);
+  }
+  return result;
+}
+
+PhotonMaps maps_on(Device& device, const Scene& scene, const Photons& photons) {
+  return {device,
+          scene,
+          photons,
+          find_map_groups(scene, photons, MapMode::automatic, {radius}),
+          {.radius = radius}};
+}
+
+TEST_CASE("hits without photons are dark, whatever the hits before them were") {
+  const Scene scene = two_plates();
+  const Photons photons = photons_on_one(scene);
+  const PhotonMaps maps = maps_on(device(), scene, photons);
+  const PrimaryHits hits = uniform_hits(scene, 2'000, 8);
+  Estimator estimator(maps, scene, {});
+  const LightTable lit = estimator.estimate(on_plate(hits, false));
+  REQUIRE(lit.irradiance.size() > 900);
+  for (const glm::vec3& irradiance : lit.irradiance) REQUIRE(irradiance.x > 0);
+  const PrimaryHits far_hits = on_plate(hits, true);
+  const LightTable dark = estimator.estimate(far_hits);  // about as many
+  REQUIRE(dark.irradiance.size() == far_hits.size());
+  for (const glm::vec3& irradiance : dark.irradiance) REQUIRE(irradiance == glm::vec3(0));
+}
+
+TEST_CASE("hits of several batches are those of calls of their own") {
+  const Scene scene = two_plates();
+  const Photons photons = photons_on_one(scene);
+  const PhotonMaps maps = maps_on(device(), scene, photons);
+  // More than two batches where one is sent while another is computed.
+  const PrimaryHits hits = uniform_hits(scene, 300'001, 9);
+  Estimator estimator(maps, scene, {.neighbours = 5});
+  const LightTable together = estimator.estimate(hits);
+  REQUIRE(together.irradiance.size() == hits.size());
+  constexpr std::size_t part = 70'001;
+  for (std::size_t begin = 0; begin < hits.size(); begin += part) {
+    const LightTable alone = estimator.estimate(hits, begin, std::min(part, hits.size() - begin));
+    CHECK(std::equal(alone.irradiance.begin(), alone.irradiance.end(),
+                     together.irradiance.begin() + static_cast<std::ptrdiff_t>(begin)));
+  }
+}
+
+TEST_CASE("what batches leave behind makes room where memory runs out") {
+  const Scene scene = two_plates();
+  const Photons photons = photons_on_one(scene);
+  constexpr std::uint64_t memory = 32u << 20;
+  DeviceOptions options;
+  options.memory_bytes = memory;
+  Device device(options);
+  const PhotonMaps maps = maps_on(device, scene, photons);
+  const PrimaryHits hits = on_plate(uniform_hits(scene, 2'000, 8), false);
+  Estimator estimator(maps, scene, {});
+  const LightTable expected = estimator.estimate(hits);
+  device::Context& context = device::context_of(device);
+  {
+    // The maps stay.
+    const std::uint64_t maps_bytes = context.allocated_bytes();
+    const auto rest = context.allocate<std::uint8_t>(memory - maps_bytes, "the rest");
+    CHECK(context.allocated_bytes() == memory);
+  }
+  CHECK(estimator.estimate(hits).irradiance == expected.irradiance);
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
-#include <filesystem>
-#include <iterator>
 #include <map>
 #include <regex>
 #include <set>

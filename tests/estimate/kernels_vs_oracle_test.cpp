@@ -1,12 +1,8 @@
 // The cone of the density estimate over whole discs against brute force in double precision, for
 // every structure and strategy, few lights and many, diffuse and glossy.
-#include <catch2/catch.hpp>
 
-#include "estimates_comparison.hpp"
 #include "oracle_checks.hpp"
 #include "photon_sets.hpp"
-#include "structures/structure.hpp"
-#include "test_device.hpp"
 #include "test_tunings.hpp"
 
 namespace photile::test {
@@ -21,16 +17,16 @@ struct Subject {
   PrimaryHits hits;
 
   explicit Subject(std::size_t lights, std::size_t photon_count = 20'000)
-      : scene(test::empty_scene(lights)) {
-    test::add_torus(scene, 1.0f, 0.4f, 24, 12);
-    photons = test::uniform_photons(scene, photon_count, 53);
-    hits = test::uniform_hits(scene, 200, 54);
+      : scene(empty_scene(lights)) {
+    add_torus(scene, 1.0f, 0.4f, 24, 12);
+    photons = uniform_photons(scene, photon_count, 53);
+    hits = uniform_hits(scene, 200, 54);
   }
 
   LightTable estimate(int k, std::string_view structure = "uniform-grid",
                       const std::optional<EstimateTuning>& tuning = std::nullopt) const {
     const PhotonMaps maps =
-        structures::build(structures::named(structure), test::device(), scene, photons,
+        structures::build(structures::named(structure), device(), scene, photons,
                           find_neighbour_groups(scene, {radius, 60}), {radius, 4});
     EstimateParameters parameters{.neighbours = k, .area = AreaMode::disc, .kernel = kernel};
     parameters.tuning = tuning;
@@ -43,10 +39,10 @@ struct Subject {
 double worst_difference(const Subject& subject, const LightTable& estimates, int k) {
   const reference::DensityOracle oracle(subject.scene, subject.photons,
                                         reference::PhotonFilter::grouped, 60);
-  const auto truth = test::expected_irradiance(oracle, subject.hits, k, radius, kernel);
-  const auto scale = test::expected_irradiance(oracle, subject.hits, k, radius);
+  const auto truth = expected_irradiance(oracle, subject.hits, k, radius, kernel);
+  const auto scale = expected_irradiance(oracle, subject.hits, k, radius);
   const std::size_t lights = subject.scene.lights.size();
-  const auto irradiance = test::by_light(estimates.irradiance, estimates, lights);
+  const auto irradiance = by_light(estimates.irradiance, estimates, lights);
   REQUIRE(irradiance.size() == subject.hits.size() * lights);
   double worst = 0;
   for (std::size_t i = 0; i < irradiance.size(); ++i) {
@@ -58,10 +54,10 @@ double worst_difference(const Subject& subject, const LightTable& estimates, int
 }
 
 /// Over the mean weight of a third.
-double tolerance(int k) { return 3 * test::estimate_tolerance(k); }
+double tolerance(int k) { return 3 * estimate_tolerance(k); }
 
 void check_strategies(const Subject& subject, int k) {
-  for (const EstimateTuning& tuning : test::tunings_of(test::device().info())) {
+  for (const EstimateTuning& tuning : tunings_of(device().info())) {
     CAPTURE(name_of(tuning.strategy));
     const LightTable estimates = subject.estimate(k, "uniform-grid", tuning);
     CHECK(worst_difference(subject, estimates, k) <= tolerance(k));
@@ -73,7 +69,7 @@ void check_strategies(const Subject& subject, int k) {
 TEST_CASE("weighted irradiance equals the oracle's for every kind of structure and strategy") {
   const Subject subject(3);
   constexpr int k = 50;
-  for (const char* const structure : test::checked_structures) {
+  for (const char* const structure : checked_structures) {
     CAPTURE(structure);
     const LightTable estimates = subject.estimate(k, structure);
     CHECK(worst_difference(subject, estimates, k) <= tolerance(k));

@@ -1,8 +1,6 @@
 // Every kind of kernel, for every k: the neighbours and estimates of the double-precision oracle.
 // The kernels whose lanes are the work-items of a group, as on GPUs, on any device, and those of a
 // work-item's own vectors beside them, which differ in the order of sums alone.
-#include <array>
-#include <catch2/catch.hpp>
 #include <string>
 #include <utility>
 

@@ -3,7 +3,6 @@
 #include <set>
 
 #include "estimates_comparison.hpp"
-#include "oracle/density_oracle.hpp"
 #include "photon_sets.hpp"
 #include "structures/structure.hpp"
 #include "test_device.hpp"
@@ -15,18 +14,18 @@ constexpr double radius = 0.2;
 constexpr int k = 50;
 
 Scene plate(std::size_t lights, bool glossy) {
-  Scene scene = test::empty_scene(lights);
+  Scene scene = empty_scene(lights);
   if (glossy) {
     scene.materials[0].specular = glm::vec3(0.04f, 0.2f, 0.6f);
     scene.materials[0].roughness = 0.3f;
   }
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
+  add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
   return scene;
 }
 
 LightTable estimate(const Scene& scene, const Photons& photons, const PrimaryHits& hits,
                     int neighbours = k) {
-  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
+  const PhotonMaps maps(device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
                         {radius, 4});
   return Estimator(maps, scene, {neighbours, 0}).estimate(hits);
 }
@@ -73,12 +72,12 @@ TEST_CASE("each light's estimates are those of its photons alone", "[long]") {
   const double tolerance = tolerance_of(neighbours);
   CAPTURE(lights, glossy, neighbours);
   const Scene scene = plate(lights, glossy);
-  const Photons photons = test::uniform_photons(scene, 4000, 91);
-  PrimaryHits hits = test::uniform_hits(scene, 150, 92);
-  if (glossy) test::add_lobes(hits, scene, 93);
+  const Photons photons = uniform_photons(scene, 4000, 91);
+  PrimaryHits hits = uniform_hits(scene, 150, 92);
+  if (glossy) add_lobes(hits, scene, 93);
   const LightTable together = estimate(scene, photons, hits, neighbours);
-  const auto irradiance = test::by_light(together.irradiance, together, lights);
-  const auto radiance = test::by_light(together.radiance, together, lights);
+  const auto irradiance = by_light(together.irradiance, together, lights);
+  const auto radiance = by_light(together.radiance, together, lights);
   for (const std::size_t light : {std::size_t{0}, std::size_t{3}, lights - 1}) {
     const LightTable one = estimate(
         plate(1, glossy), alone(photons, static_cast<std::uint16_t>(light)), hits, neighbours);
@@ -91,13 +90,13 @@ TEST_CASE("each light's estimates are those of its photons alone", "[long]") {
 TEST_CASE(
     "a light without photons changes nothing: eight lights dense, and sparse beside a ninth") {
   const Scene dense_scene = plate(8, false);
-  const Photons photons = test::uniform_photons(dense_scene, 4000, 94);
-  const PrimaryHits hits = test::uniform_hits(dense_scene, 150, 95);
+  const Photons photons = uniform_photons(dense_scene, 4000, 94);
+  const PrimaryHits hits = uniform_hits(dense_scene, 150, 95);
   const LightTable dense = estimate(dense_scene, photons, hits);
   const LightTable sparse = estimate(plate(9, false), photons, hits);
   REQUIRE(dense.first.empty());
   REQUIRE(sparse.first.size() == hits.size() + 1);
-  const auto nine = test::by_light(sparse.irradiance, sparse, 9);
+  const auto nine = by_light(sparse.irradiance, sparse, 9);
   for (std::size_t light = 0; light < 8; ++light) {
     CHECK(difference(layer(nine, light, 9), layer(dense.irradiance, light, 8)) <= tolerance_of(k));
   }
@@ -106,16 +105,15 @@ TEST_CASE(
 TEST_CASE("a hit keeps the lights that reach it, each once, however many there are") {
   // Each quarter of the plate is lit by three lights of its own among 1,000. Their numbers differ
   // by a power of two, so that they meet in any smaller hash table.
-  Scene scene = test::empty_scene(1000);
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
-  Photons photons = test::uniform_photons(scene, 8000, 96);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2}}, 1000);
+  Photons photons = uniform_photons(scene, 8000, 96);
   const auto quarter_of = [](const glm::vec3& p) {
     return (p.x < 0.5f ? 0 : 1) + (p.y < 0.5f ? 0 : 2);
   };
   for (std::size_t i = 0; i < photons.size(); ++i) {
     photons.light[i] = static_cast<std::uint16_t>(quarter_of(photons.position[i]) + 256 * (i % 3));
   }
-  const PrimaryHits hits = test::uniform_hits(scene, 200, 97);
+  const PrimaryHits hits = uniform_hits(scene, 200, 97);
   const LightTable estimates = estimate(scene, photons, hits);
   REQUIRE(estimates.first.size() == hits.size() + 1);
   CHECK(estimates.first.front() == 0);
@@ -146,13 +144,13 @@ TEST_CASE("estimates for fewer neighbours than kernels are compiled for keep to 
   const auto lights = static_cast<std::size_t>(GENERATE(8, 13, 70));
   const bool glossy = lights == 13;
   Scene scene = plate(lights, glossy);
-  const Photons photons = test::uniform_photons(scene, 2000, 98);
-  PrimaryHits hits = test::uniform_hits(scene, 64, 99);
-  if (glossy) test::add_lobes(hits, scene, 93);
+  const Photons photons = uniform_photons(scene, 2000, 98);
+  PrimaryHits hits = uniform_hits(scene, 64, 99);
+  if (glossy) add_lobes(hits, scene, 93);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
   for (const std::string_view structure : {"uniform-grid", "kdtree-3d"}) {
-    const PhotonMaps maps = structures::build(structures::named(structure), test::device(), scene,
+    const PhotonMaps maps = structures::build(structures::named(structure), device(), scene,
                                               photons, groups, {radius, 4});
     for (const int neighbours : {1, 5, 12, compiled}) {
       CAPTURE(lights, neighbours, structure);
@@ -161,13 +159,12 @@ TEST_CASE("estimates for fewer neighbours than kernels are compiled for keep to 
       parameters.compiled_neighbours = compiled;
       parameters.area = AreaMode::disc;
       const LightTable estimates = Estimator(maps, scene, parameters).estimate(hits);
-      test::ExpectedEstimates expected;
+      ExpectedEstimates expected;
       for (std::size_t i = 0; i < hits.size(); ++i) {
         expected.push_back(
             oracle.irradiance(hits.position[i], hits.oriented_face[i], neighbours, radius));
       }
-      CHECK(test::worst_difference(test::by_light(estimates.irradiance, estimates, lights),
-                                   expected) <= 1e-5);
+      CHECK(worst_difference(by_light(estimates.irradiance, estimates, lights), expected) <= 1e-5);
     }
   }
 }
@@ -177,9 +174,9 @@ TEST_CASE("any number of lights up to 70 and any level of k keep to their buffer
   constexpr int compiled = 50;
   const auto lights = static_cast<std::size_t>(GENERATE(range(1, 71)));
   const Scene scene = plate(lights, false);
-  const Photons photons = test::uniform_photons(scene, 2000, 98);
-  const PrimaryHits hits = test::uniform_hits(scene, 64, 99);
-  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
+  const Photons photons = uniform_photons(scene, 2000, 98);
+  const PrimaryHits hits = uniform_hits(scene, 64, 99);
+  const PhotonMaps maps(device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
                         {radius, 4});
   for (const int neighbours : {1, 3, 6, 12, 13, 25, 50}) {
     CAPTURE(lights, neighbours);
@@ -191,7 +188,7 @@ TEST_CASE("any number of lights up to 70 and any level of k keep to their buffer
     const Scene single = plate(1, false);
     Photons together = photons;
     together.light.clear();
-    const PhotonMaps single_maps(test::device(), single, together,
+    const PhotonMaps single_maps(device(), single, together,
                                  find_neighbour_groups(single, {radius, 60}), {radius, 4});
     const LightTable sums = Estimator(single_maps, single, parameters).estimate(hits);
     const auto by_light = test::by_light(shared.irradiance, shared, lights);

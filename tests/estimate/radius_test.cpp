@@ -19,7 +19,7 @@ namespace {
 constexpr float albedo = 0.5f;
 
 Scene closed_box() {
-  Scene scene = test::closed_box(test::diffuse(glm::vec3(albedo)));
+  Scene scene = test::closed_box(diffuse(albedo));
   scene.lights[0].position = glm::vec3(0.5f);
   return scene;
 }
@@ -47,7 +47,7 @@ double mean_illuminance(const Scene& scene, double radius) {
   parameters.photons.emitted_photons = 200'000;
   parameters.radius = radius;
   const std::vector<Sensor> sensors = sensors_on_walls();
-  const RenderResult result = measure(scene, sensors, std::span(&test::device(), 1), parameters);
+  const RenderResult result = measure(scene, sensors, std::span(&device(), 1), parameters);
   double sum = 0;
   const auto dense = result.layers.dense();
   for (const float value : dense.layers.at(0).illuminance) {
@@ -87,16 +87,13 @@ TEST_CASE(
 TEST_CASE("estimates over radii from 1e-5 m to beyond all scenes are the oracle's") {
   // Hits lie on photons, so that the smallest disc holds one; a fold, a border and regions of one
   // triangle and of many are among what clips it.
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, 1);
-  test::add_plate(scene, {1, 0, 0}, {0.6f, 0, 0.3f}, {0.3f, 1, 0}, 12);
-  test::add_plate(scene, {0, 0, -0.01f}, {0.5f, 0, 0}, {0, 0.5f, 0}, 2);
-  const Photons photons = test::uniform_photons(scene, 3000, 171);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, 1},
+                                 {{1, 0, 0}, {0.6f, 0, 0.3f}, {0.3f, 1, 0}, 12},
+                                 {{0, 0, -0.01f}, {0.5f, 0, 0}, {0, 0.5f, 0}, 2}});
+  const Photons photons = uniform_photons(scene, 3000, 171);
   PrimaryHits hits;
   for (std::size_t i = 0; i < photons.size(); i += 20) {
-    hits.position.push_back(photons.position[i]);
-    hits.oriented_face.push_back(photons.oriented_face[i]);
-    hits.diffuse_albedo.emplace_back(0.5f);
+    add_grey_hit(hits, photons.position[i], photons.oriented_face[i]);
   }
   hits.pixel.resize(hits.size());
   // Coordinates of 1 m are right to 6e-8 m: of smaller discs rounding tells what lies in them.
@@ -105,13 +102,13 @@ TEST_CASE("estimates over radii from 1e-5 m to beyond all scenes are the oracle'
   const SurfaceIndex surface = index_surface(scene, landed_on(scene, photons), radius, 60);
   const reference::ClippedArea area(scene, photons, surface, 60);
   const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
-  const PhotonMaps maps(test::device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
+  const PhotonMaps maps(device(), scene, photons, find_neighbour_groups(scene, {radius, 60}),
                         {radius, 4});
   for (const AreaMode mode : all_area_modes) {
     EstimateParameters parameters;
     parameters.area = mode;
     const LightTable estimates = Estimator(maps, scene, parameters).estimate(hits);
-    test::ExpectedEstimates expected;
+    ExpectedEstimates expected;
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const glm::vec3 hit = hits.position[i];
       const std::uint32_t own = hits.oriented_face[i];
@@ -120,19 +117,18 @@ TEST_CASE("estimates over radii from 1e-5 m to beyond all scenes are the oracle'
                                                 : oracle.irradiance(area, hit, own, 50, searched));
     }
     CAPTURE(name_of(mode));
-    CHECK(test::worst_difference(test::by_light(estimates.irradiance, estimates, 1), expected) <=
-          1e-3);
+    CHECK(worst_difference(by_light(estimates.irradiance, estimates, 1), expected) <= 1e-3);
   }
 }
 
 TEST_CASE("maps, groups and surfaces refuse radii that arithmetic cannot hold") {
   const Scene scene = closed_box();
-  const Photons photons = test::uniform_photons(scene, 100, 172);
+  const Photons photons = uniform_photons(scene, 100, 172);
   for (const double radius : {-1.0, 0.0, 1e-20, 1e25, std::nan("")}) {
     CAPTURE(radius);
     CHECK_THROWS_AS(index_surface(scene, landed_on(scene, photons), radius, 60), UsageError);
     const NeighbourGroups groups = find_neighbour_groups(scene, {1.0, 60});
-    CHECK_THROWS_AS(PhotonMaps(test::device(), scene, photons, groups, {radius}), UsageError);
+    CHECK_THROWS_AS(PhotonMaps(device(), scene, photons, groups, {radius}), UsageError);
   }
   CHECK_THROWS_AS(find_neighbour_groups(scene, {1e25, 60}), UsageError);
 }

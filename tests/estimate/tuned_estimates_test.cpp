@@ -1,7 +1,5 @@
 // Every tuning gives the oracle's estimates.
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 
 #include "estimate/specialisation.hpp"
 #include "estimates_comparison.hpp"
@@ -34,11 +32,11 @@ struct Case {
   void check(const std::vector<EstimateTuning>& tunings) const {
     const reference::DensityOracle oracle(scene, photons, reference::PhotonFilter::grouped, 60);
     const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
-    const PhotonMaps maps(test::device(), scene, photons, groups, {radius, 4});
-    const auto irradiance = test::expected_irradiance(oracle, hits, k, radius);
-    test::ExpectedEstimates radiance;
+    const PhotonMaps maps(device(), scene, photons, groups, {radius, 4});
+    const auto irradiance = expected_irradiance(oracle, hits, k, radius);
+    ExpectedEstimates radiance;
     if (needs_of(scene).glossy) {
-      radiance = test::expected_radiance(oracle, photons, hits, scene.lights.size(), k, radius);
+      radiance = expected_radiance(oracle, photons, hits, scene.lights.size(), k, radius);
     }
     for (const EstimateTuning& tuning : tunings) {
       CAPTURE(name_of(tuning.strategy), tuning.vector_width, tuning.hits_per_item, k);
@@ -46,64 +44,64 @@ struct Case {
           Estimator(maps, scene, {.neighbours = k, .tuning = tuning, .area = AreaMode::disc})
               .estimate(hits);
       const std::size_t lights = scene.lights.size();
-      CHECK(test::worst_difference(test::by_light(estimates.irradiance, estimates, lights),
-                                   irradiance) <= test::estimate_tolerance(k));
-      CHECK(test::worst_difference(test::by_light(estimates.radiance, estimates, lights),
-                                   radiance) <= test::glossy_tolerance(k));
+      CHECK(worst_difference(by_light(estimates.irradiance, estimates, lights), irradiance) <=
+            estimate_tolerance(k));
+      CHECK(worst_difference(by_light(estimates.radiance, estimates, lights), radiance) <=
+            glossy_tolerance(k));
     }
   }
 };
 
 /// A plate, or a torus whose maps hold few hits each, with hits that are neighbours in memory.
 Case one_light() {
-  Case data{.scene = test::empty_scene()};
-  test::add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3);
-  data.photons = test::uniform_photons(data.scene, 6000, 71);
-  data.hits = test::uniform_hits(data.scene, 700, 72);
+  Case data{.scene = empty_scene()};
+  add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3);
+  data.photons = uniform_photons(data.scene, 6000, 71);
+  data.hits = uniform_hits(data.scene, 700, 72);
   return data;
 }
 
 /// Maps of few photons and hits.
 Case small_maps(bool both_sides = true) {
-  Case data{.scene = test::empty_scene()};
-  test::add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
-  data.photons = test::uniform_photons(data.scene, both_sides ? 2000 : 1000, 84, both_sides);
-  data.hits = test::uniform_hits(data.scene, 700, 85);
+  Case data{.scene = empty_scene()};
+  add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+  data.photons = uniform_photons(data.scene, both_sides ? 2000 : 1000, 84, both_sides);
+  data.hits = uniform_hits(data.scene, 700, 85);
   data.k = 20;
   return data;
 }
 
 Case several_lights() {
-  Case data{.scene = test::empty_scene(3)};
-  test::add_torus(data.scene, 1.0f, 0.4f, 12, 6);
-  data.photons = test::uniform_photons(data.scene, 8000, 73);
-  data.hits = test::uniform_hits(data.scene, 400, 74);
+  Case data{.scene = empty_scene(3)};
+  add_torus(data.scene, 1.0f, 0.4f, 12, 6);
+  data.photons = uniform_photons(data.scene, 8000, 73);
+  data.hits = uniform_hits(data.scene, 400, 74);
   data.radius = 0.3;
   return data;
 }
 
 Case many_lights() {
-  Case data{.scene = test::empty_scene(70)};
-  test::add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
-  data.photons = test::uniform_photons(data.scene, 6000, 78);
-  data.hits = test::uniform_hits(data.scene, 300, 79);
+  Case data{.scene = empty_scene(70)};
+  add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
+  data.photons = uniform_photons(data.scene, 6000, 78);
+  data.hits = uniform_hits(data.scene, 300, 79);
   return data;
 }
 
 Case glossy(std::size_t lights = 2) {
-  Case data{.scene = test::empty_scene(lights)};
+  Case data{.scene = empty_scene(lights)};
   data.scene.materials[0].specular = glm::vec3(0.04f, 0.2f, 0.6f);
   data.scene.materials[0].roughness = 0.3f;
-  test::add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
-  data.photons = test::uniform_photons(data.scene, 5000, 75);
-  data.hits = test::uniform_hits(data.scene, 200, 76);
-  test::add_lobes(data.hits, data.scene, 77);
+  add_plate(data.scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 2);
+  data.photons = uniform_photons(data.scene, 5000, 75);
+  data.hits = uniform_hits(data.scene, 200, 76);
+  add_lobes(data.hits, data.scene, 77);
   return data;
 }
 
 /// Work-items that take hits in turn look for one's neighbours where those of the one before were.
 void check_bits_of_hits_in_turn(const Case& data, AreaMode area) {
-  const PhotonMaps maps(test::device(), data.scene, data.photons,
+  const PhotonMaps maps(device(), data.scene, data.photons,
                         find_neighbour_groups(data.scene, {data.radius, 60}), {data.radius, 4});
   const auto estimate = [&](int hits_per_item) {
     return Estimator(maps, data.scene,
@@ -162,8 +160,8 @@ TEST_CASE("of two photons in one place at the border of the neighbourhood one co
   std::mt19937_64 random(80);
   for (std::size_t i = 0; i < data.photons.size() / 2; ++i) {
     for (int n = 0; n < 2; ++n) {
-      test::add_photon(twice, data.scene, data.photons.position[i], data.photons.oriented_face[i],
-                       random);
+      add_photon(twice, data.scene, data.photons.position[i], data.photons.oriented_face[i],
+                 random);
     }
   }
   data.photons = sort_by_oriented_face(std::move(twice), 2 * data.scene.triangle_count());
@@ -179,16 +177,16 @@ TEST_CASE("hits that no photon comes near read nothing, next to hits that photon
 }
 
 TEST_CASE("selection tells photons apart at distances of ten orders of magnitude") {
-  Case data{.scene = test::empty_scene()};
-  test::add_triangle(data.scene, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
+  Case data{.scene = empty_scene()};
+  add_triangle(data.scene, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
   std::mt19937_64 random(82);
   for (int i = 0; i < 200; ++i) {
     const double distance = std::pow(10, -1 - i / 20.0), turn = i;
     const glm::vec3 place(distance * std::cos(turn), distance * std::sin(turn), 0);
-    test::add_photon(data.photons, data.scene, place, 0, random);
+    add_photon(data.photons, data.scene, place, 0, random);
   }
   data.photons = sort_by_oriented_face(std::move(data.photons), 2);
-  data.hits = test::uniform_hits(data.scene, 8, 83, false);
+  data.hits = uniform_hits(data.scene, 8, 83, false);
   std::fill(data.hits.position.begin(), data.hits.position.end(), glm::vec3(0.0f));
   data.check({{EstimateStrategy::select, 8, 8, 16}});
 }
@@ -206,7 +204,7 @@ TEST_CASE("an estimate of many lights, or of gloss, has the same bits whatever i
 
 TEST_CASE("a tuning that no kernel exists for is refused") {
   const Case data = one_light();
-  const PhotonMaps maps(test::device(), data.scene, data.photons,
+  const PhotonMaps maps(device(), data.scene, data.photons,
                         find_neighbour_groups(data.scene, {0.2, 60}), {0.2, 4});
   for (const EstimateTuning& tuning :
        std::vector<EstimateTuning>{{EstimateStrategy::select, 3, 1, 64},

@@ -14,6 +14,8 @@
 namespace photile::test {
 namespace {
 
+using Catch::Contains;
+
 constexpr int success = 0;
 constexpr int device_error = 4;
 
@@ -73,7 +75,7 @@ void check_failure(const Failure& failure, Light light, long at, bool on, const 
   const Outcome outcome =
       run_photile(small_render(folder, failing(failure, at, on, folder, device), {}, light));
   CAPTURE(failure.call, at, on);
-  CHECK_THAT(last_error(outcome, device_error), Catch::Contains(failure.name));
+  CHECK_THAT(last_error(outcome, device_error), Contains(failure.name));
   for (const auto& entry : std::filesystem::directory_iterator(folder / ".")) {
     CHECK(entry.path().filename().string().find("out") == std::string::npos);
   }
@@ -136,7 +138,7 @@ TEST_CASE("a compiler without memory ends the command in one line, and not in a 
   layer["PHOTILE_FAIL_BY"] = GENERATE("new", "thread");
   CAPTURE(layer["PHOTILE_FAIL_BY"]);
   const Outcome outcome = run_photile(small_render(folder, layer, {"-q"}));
-  CHECK_THAT(only_error(outcome, device_error), Catch::Contains("ulimit -v"));
+  CHECK_THAT(only_error(outcome, device_error), Contains("ulimit -v"));
 }
 
 TEST_CASE("a runtime that aborts ends the command in one line") {
@@ -144,7 +146,7 @@ TEST_CASE("a runtime that aborts ends the command in one line") {
   auto layer = failing({"clBuildProgram", 0, ""}, 1, false, folder);
   layer["PHOTILE_FAIL_BY"] = "abort";
   const Outcome outcome = run_photile(small_render(folder, layer, {"-q"}));
-  CHECK_THAT(only_error(outcome, device_error), Catch::Contains("--device"));
+  CHECK_THAT(only_error(outcome, device_error), Contains("--device"));
 }
 
 TEST_CASE("a compiler that takes more than a minute is told of once, and its kernel is run",
@@ -154,7 +156,7 @@ TEST_CASE("a compiler that takes more than a minute is told of once, and its ker
   layer["PHOTILE_FAIL_BY"] = "minute";
   const Outcome outcome = run_photile(small_render(folder, layer, {"-q"}));
   CHECK(outcome.exit_code == 0);
-  CHECK_THAT(outcome.errors, Catch::Contains("for a minute") && Catch::Contains("-k"));
+  CHECK_THAT(outcome.errors, Contains("for a minute") && Contains("-k"));
   CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
 }
 
@@ -191,9 +193,8 @@ TEST_CASE("a device that allocates no large buffer renders the same picture from
 TEST_CASE("a device that allocates next to nothing is reported once") {
   const FileFolder folder;
   const Outcome outcome = run_photile(small_render(folder, {{"PHOTILE_FAIL_ABOVE", "100"}}));
-  CHECK_THAT(
-      last_error(outcome, device_error),
-      Catch::Contains("CL_MEM_OBJECT_ALLOCATION_FAILURE") && Catch::Contains("use fewer photons"));
+  CHECK_THAT(last_error(outcome, device_error),
+             Contains("CL_MEM_OBJECT_ALLOCATION_FAILURE") && Contains("use fewer photons"));
 }
 
 TEST_CASE("a render in a small device_memory is the same; in too small a one it says what to do") {
@@ -203,7 +204,7 @@ TEST_CASE("a render in a small device_memory is the same; in too small a one it 
     CHECK(picture_of(folder, small_render(folder, {}, {"--set", memory})) == undisturbed_picture());
   }
   const Outcome outcome = run_photile(small_render(folder, {}, {"--set", "device_memory=3e-7"}));
-  CHECK_THAT(last_error(outcome, device_error), Catch::Contains("a larger memory limit"));
+  CHECK_THAT(last_error(outcome, device_error), Contains("a larger memory limit"));
 }
 
 TEST_CASE("PoCL with 256 MiB a buffer renders the same picture", "[slow]") {

@@ -2,10 +2,6 @@
 #include <malloc.h>
 
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <string>
 #include <vector>
 
 #include "file_bytes.hpp"

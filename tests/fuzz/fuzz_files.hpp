@@ -10,6 +10,7 @@
 
 #include "photile/errors.hpp"
 #include "targets.hpp"
+#include "test_scenes.hpp"
 
 namespace photile::test {
 
@@ -32,6 +33,14 @@ class FuzzFolder {
  private:
   std::filesystem::path path_;
 };
+
+/// A floor of two triangles with a lamp above.
+inline Scene lit_floor() {
+  SceneBuilder builder("floor");
+  builder.grid(glm::vec3(0.0f), {1, 0, 0}, {0, 1, 0}, 1, builder.add(diffuse(0.5f)));
+  builder.add(point_light("lamp", {0.4f, 0.5f, 0.7f}));
+  return builder.build();
+}
 
 /// Writes a file for readers that take a name, over what the last input left there: its memory
 /// stays.

@@ -7,7 +7,6 @@
 #include <cstdlib>
 
 #include "json_mutator.hpp"
-#include "targets.hpp"
 
 namespace {
 

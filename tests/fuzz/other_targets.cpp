@@ -1,7 +1,5 @@
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "command/setting_options.hpp"
 #include "command/validators.hpp"
@@ -17,9 +15,7 @@
 #include "measuring/working_plane.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/load_scene.hpp"
-#include "photile/scene_builder.hpp"
 #include "render/setting.hpp"
-#include "test_scenes.hpp"
 #include "view/moods.hpp"
 #include "walk/frames.hpp"
 #include "weather/perez_sky.hpp"
@@ -33,14 +29,6 @@ void check_sensors(const measuring::SensorGrid& grid) {
     require(std::isfinite(glm::length(sensor.position)), "a point is nowhere");
     require(std::abs(glm::length(sensor.normal) - 1) < 1e-6, "a direction is none");
   }
-}
-
-/// A floor with a lamp above, to which options add.
-Scene lit_floor() {
-  SceneBuilder builder("floor");
-  builder.grid(glm::vec3(0.0f), {1, 0, 0}, {0, 1, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
-  builder.add(point_light("lamp", {0.4f, 0.5f, 0.7f}));
-  return builder.build();
 }
 
 /// What a command that was given them has as lights.

@@ -1,10 +1,7 @@
 // Saved maps. Their digests would refuse nearly all that a fuzzer changes, so that the target puts
 // them right: what is behind them is read as if a program had written it.
-#include <algorithm>
 #include <array>
-#include <cstdint>
 #include <cstring>
-#include <glm/glm.hpp>
 #include <vector>
 
 #include "cache/light_maps.hpp"
@@ -12,7 +9,6 @@
 #include "fuzz_files.hpp"
 #include "saved_maps/saved_maps.hpp"
 #include "scene/scene_queries.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -32,14 +28,8 @@ static_assert(sizeof(Head) == 104);
 
 const saved_maps::Settings words{"words", ""};
 
-/// A floor of two triangles with a lamp above.
 const Scene& floor_scene() {
-  static const Scene scene = [] {
-    SceneBuilder builder("floor");
-    builder.grid(glm::vec3(0.0f), {1, 0, 0}, {0, 1, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
-    builder.add(point_light("lamp", {0.4f, 0.5f, 0.7f}));
-    return builder.build();
-  }();
+  static const Scene scene = lit_floor();
   return scene;
 }
 

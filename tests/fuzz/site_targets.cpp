@@ -1,7 +1,5 @@
 // What is placed in and around a scene: luminaires, and the weather.
-#include <algorithm>
 #include <cmath>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,9 +8,7 @@
 #include "fuzz_files.hpp"
 #include "loading/luminaires.hpp"
 #include "photile/scene.hpp"
-#include "photile/scene_builder.hpp"
 #include "scene/light_names.hpp"
-#include "test_scenes.hpp"
 #include "weather/sky_patches.hpp"
 #include "weather/weather_file.hpp"
 
@@ -27,7 +23,7 @@ constexpr std::string_view sound_lamp =
 const Scene& room() {
   static const Scene scene = [] {
     SceneBuilder builder("room");
-    builder.box(glm::vec3(0.0f), {4, 2.5f, 3}, builder.add(diffuse(glm::vec3(0.5f))), true);
+    builder.box(glm::vec3(0.0f), {4, 2.5f, 3}, builder.add(diffuse(0.5f)), true);
     builder.add(point_light("lamp", {2, 2, 1}));
     Scene built = builder.build();
     Camera camera;

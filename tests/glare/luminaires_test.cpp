@@ -3,7 +3,6 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 
 #include "glare/measure_glare.hpp"
 #include "test_scenes.hpp"
@@ -12,7 +11,7 @@
 namespace photile::test {
 namespace {
 
-using namespace photile::glare;
+using namespace glare;
 
 /// At the origin, looking along y with z up.
 const Observer eye{"eye", glm::dvec3(0), {0, 1, 0}, {0, 0, 1}};
@@ -20,7 +19,7 @@ const Observer eye{"eye", glm::dvec3(0), {0, 1, 0}, {0, 0, 1}};
 /// A square of 2 h metres that faces the eye from `distance` metres, `above` the line of sight.
 void add_panel(SceneBuilder& builder, double h, double distance, double above, double lumens,
                const std::string& name = "panel") {
-  const auto black = builder.add(diffuse(glm::vec3(0)));
+  const auto black = builder.add(diffuse(0));
   const auto light = builder.add(area_light(name, lumens));
   builder.grid(glm::vec3(-h, distance, above - h), glm::vec3(2 * h, 0, 0), glm::vec3(0, 0, 2 * h),
                1, black, light);
@@ -34,8 +33,6 @@ double solid_angle(double a, double b, double distance) {
 }
 
 LightMix mix_of(const Scene& scene) { return LightMix::of(scene, 683); }
-
-}  // namespace
 
 TEST_CASE("a panel before the eye has its luminance, solid angle and illuminance") {
   SceneBuilder builder("panel");
@@ -58,7 +55,7 @@ TEST_CASE("a screen hides its part of a panel, a pane of glass weakens it") {
   const bool glass = GENERATE(false, true);
   SceneBuilder builder("panel");
   add_panel(builder, 0.5, 2, 0, 1000);
-  const auto screen = builder.add(glass ? test::glass(1.5f, true) : diffuse(glm::vec3(0)));
+  const auto screen = builder.add(glass ? test::glass(1.5f, true) : diffuse(0));
   builder.grid({0, 1, -1}, {1, 0, 0}, {0, 0, 2}, 1, screen);  // the right half
   const Scene scene = builder.build();
   const RayScene rays(scene);
@@ -79,7 +76,7 @@ TEST_CASE("a screen hides its part of a panel, a pane of glass weakens it") {
 TEST_CASE(
     "what lies behind the eye, shines away or is off is not seen; parts apart are luminaires") {
   SceneBuilder builder("panels");
-  const auto black = builder.add(diffuse(glm::vec3(0)));
+  const auto black = builder.add(diffuse(0));
   const auto both = builder.add(area_light("both", 100));
   builder.grid({-2, 3, 0}, {1, 0, 0}, {0, 0, 1}, 1, black, both);
   builder.grid({1, 3, 0}, {1, 0, 0}, {0, 0, 1}, 1, black, both);
@@ -102,7 +99,7 @@ TEST_CASE(
 
 TEST_CASE("a photometric lamp is as bright as its intensity over its opening") {
   SceneBuilder builder("lamp");
-  builder.grid({-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, 1, builder.add(diffuse(glm::vec3(0))));
+  builder.grid({-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, 1, builder.add(diffuse(0)));
   Light lamp = point_light("lamp", {0, 4, 3});
   lamp.direction = {0, 0, -1};
   builder.add(lamp);
@@ -121,14 +118,12 @@ TEST_CASE("a photometric lamp is as bright as its intensity over its opening") {
   CHECK(seen[0].illuminance == Approx(500.0 / 25 * 0.8).epsilon(1e-5));
 }
 
-namespace {
-
 /// An even lamp of 500 cd at (0, 4, 3) over a dark floor; a surface of `side` metres squared that
 /// faces down, or a point.
 Scene even_lamp(const LuminousOpening& opening, const glm::dvec3& aim, const glm::dvec3& x_axis,
                 double side = 0) {
   SceneBuilder builder("lamp");
-  const auto black = builder.add(diffuse(glm::vec3(0)));
+  const auto black = builder.add(diffuse(0));
   builder.grid({-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, 1, black);
   if (side > 0) {
     const auto light = builder.add(area_light("lamp", 1));
@@ -157,8 +152,6 @@ VisibleLuminaire seen_of(const Scene& scene, const Observer& observer) {
 }
 
 const Observer level{"level", {0, 0, 3}, {0, 1, 0}, {0, 0, 1}};
-
-}  // namespace
 
 TEST_CASE("a tube that is turned and tilted shows its length and ends as they lie in the room") {
   constexpr double length = 1.2, d = 0.1;
@@ -242,8 +235,6 @@ TEST_CASE("a small lamp before an even background has UGR and DGP in closed form
   CHECK(glare.picture->illuminance == Approx(at_eye).epsilon(0.02));
 }
 
-namespace {
-
 constexpr double sky = 120;  ///< cd/m2
 
 GlareParameters without_pictures() {
@@ -263,12 +254,10 @@ ObserverGlare rated(SceneBuilder& builder, GlareParameters parameters) {
   return measure_glare(scene, std::span(&eye, 1), mix_of(scene), 1, {}, parameters).front();
 }
 
-}  // namespace
-
 TEST_CASE("UGR by luminaires and by pictures is the same where the sources are the same") {
   SceneBuilder builder("two panels before a sky");
   const double lumens = 3000, luminance = lumens / (glm::pi<double>() * 0.36);
-  const auto black = builder.add(diffuse(glm::vec3(0)));
+  const auto black = builder.add(diffuse(0));
   for (const float x : {-1.1f, 0.5f}) {
     const auto light = builder.add(area_light(x < 0 ? "left" : "right", lumens));
     builder.grid({x, 3, 0.7f}, {0.6f, 0, 0}, {0, 0, 0.6f}, 1, black, light);
@@ -336,7 +325,7 @@ TEST_CASE("an opening of more than 1.5 m2 has a GGR by its light and the sky's a
 
 TEST_CASE("large are openings of more than 1.5 m2, by what of them faces down") {
   SceneBuilder builder("panels");
-  const auto black = builder.add(diffuse(glm::vec3(0)));
+  const auto black = builder.add(diffuse(0));
   const auto panel = [&](const char* name, float x, const glm::vec3& u, const glm::vec3& v) {
     builder.grid({x, 3, 3}, u, v, 1, black, builder.add(area_light(name, 100)));
   };
@@ -349,4 +338,5 @@ TEST_CASE("large are openings of more than 1.5 m2, by what of them faces down") 
   CHECK(Luminaires(rays, 64).large_area({0, 0, 1}) == Approx(2 + 2 * 0.8).epsilon(1e-5));
 }
 
+}  // namespace
 }  // namespace photile::test

@@ -12,7 +12,7 @@
 namespace photile::test {
 namespace {
 
-using namespace photile::glare;
+using namespace glare;
 
 // The formulas of glare against numbers worked out by hand and published values.
 

@@ -3,13 +3,10 @@
 // changes what it is meant to.
 //
 // PHOTILE_RENEW_GOLDEN=1 writes golden.csv anew, and says what has changed.
-#include <fmt/format.h>
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 
 #include "file_bytes.hpp"
 #include "light/light_at_points.hpp"
@@ -77,7 +74,7 @@ Pixels picture_of(const Scene& scene, Method method, std::uint64_t seed) {
   const Camera& camera = scene.cameras.front();
   const LightLayers layers =
       (method == Method::paths ? trace_paths(scene, camera, eye_rays(parameters)).layers
-                               : render(scene, camera, test::device(), parameters).layers)
+                               : render(scene, camera, device(), parameters).layers)
           .dense();
   const std::vector<double> powers = light::layer_powers(scene);
   Pixels pixels(static_cast<std::size_t>(width * height), glm::dvec4(0));
@@ -97,7 +94,7 @@ TileMeans rendered(const Golden& golden) {
     options.sky = Sky::parse("clear=12000");
     options.ground = 0;
   }
-  const Scene scene = load_scene(test::source_folder() / "scenes" / golden.scene, options);
+  const Scene scene = load_scene(source_folder() / "scenes" / golden.scene, options);
   std::vector<Pixels> seeds;
   for (std::uint64_t seed = 1; seed <= golden_seeds; ++seed) {
     seeds.push_back(picture_of(scene, golden.method, seed));
@@ -123,7 +120,7 @@ TileMeans brighter(TileMeans means, double factor) {
 
 /// Whether these pictures look as they did, but for the noise of 16 seeds.
 void check_pictures(const std::vector<Golden>& pictures) {
-  const auto file = test::source_folder() / "tests/golden/golden.csv";
+  const auto file = source_folder() / "tests/golden/golden.csv";
   const std::vector<TileMeans> before = from_csv(bytes_of(file));
   const bool renew = std::getenv("PHOTILE_RENEW_GOLDEN") != nullptr;
   std::vector<TileMeans> all;

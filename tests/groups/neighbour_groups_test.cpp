@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <limits>
 
 #include "meshes.hpp"
@@ -259,15 +258,10 @@ TEST_CASE("automatic radius scales with the scene") {
   CHECK(automatic_radius(photons_on_sphere(20'000, 1024), 50) == Approx(1024 * unit).epsilon(1e-6));
 }
 
-TEST_CASE("automatic radius of two photons is twice their distance") {
+TEST_CASE("automatic radius of two photons is twice their distance, extrapolated for greater k") {
   Photons photons;
   photons.position = {{0, 0, 0}, {3, 4, 0}};
   CHECK(automatic_radius(photons, 1) == Approx(10).epsilon(1e-6));
-}
-
-TEST_CASE("automatic radius extrapolates when k exceeds the number of photons") {
-  Photons photons;
-  photons.position = {{0, 0, 0}, {3, 4, 0}};
   // Median of Gamma(1) is ln 2; of Gamma(50) 49.667.
   const double expected = 10 * std::sqrt(49.667 / std::log(2));
   CHECK(automatic_radius(photons, 50) == Approx(expected).epsilon(0.01));

@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <random>
 #include <set>
 #include <span>
 #include <utility>
@@ -15,20 +13,18 @@ namespace photile::test {
 namespace {
 
 Scene torus() {
-  Scene scene = test::empty_scene();
-  test::add_torus(scene, 1.0f, 0.4f, 64, 32);
+  Scene scene = empty_scene();
+  add_torus(scene, 1.0f, 0.4f, 64, 32);
   return scene;
 }
 
 /// Finely tessellated plates: a floor, a wall, a thin table top, half of whose faces are wound the
 /// other way.
 Scene room_corner() {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 24);
-  test::add_plate(scene, {0, 0, 0}, {0, 2, 0}, {0, 0, 2}, 16);
-  test::add_plate(scene, {0.5f, 0.5f, 0.7f}, {1, 0, 0}, {0, 1, 0}, 12);
-  test::add_plate(scene, {0.5f, 0.5f, 0.72f}, {0, 1, 0}, {1, 0, 0}, 12);
-  return scene;
+  return scene_of_plates({{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, 24},
+                          {{0, 0, 0}, {0, 2, 0}, {0, 0, 2}, 16},
+                          {{0.5f, 0.5f, 0.7f}, {1, 0, 0}, {0, 1, 0}, 12},
+                          {{0.5f, 0.5f, 0.72f}, {0, 1, 0}, {1, 0, 0}, 12}});
 }
 
 void check_partition(const Scene& scene, const Patches& patches) {
@@ -114,7 +110,7 @@ TEST_CASE(
     const NeighbourGroups groups = find_patch_groups(scene, patches, {radius, 60});
     check_groups(scene, groups);
 
-    const Photons photons = test::uniform_photons(scene, 20'000, 3);
+    const Photons photons = uniform_photons(scene, 20'000, 3);
     const NeighbourGroups merged = merge_patches(scene, groups, photons);
     CHECK(merged.patches.count() <= patches.count());
     check_partition(scene, merged.patches);
@@ -123,10 +119,9 @@ TEST_CASE(
 }
 
 TEST_CASE("a patch whose normals cancel has the groups of its triangles' boxes") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
-  test::add_plate(scene, {0, 0, 0.01f}, {0, 1, 0}, {1, 0, 0}, 1);
-  test::add_plate(scene, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1},
+                                 {{0, 0, 0.01f}, {0, 1, 0}, {1, 0, 0}, 1},
+                                 {{1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1}});
   Patches patches;
   patches.first_of = {0, 4, 6};
   for (std::uint32_t t = 0; t < 6; ++t) {
@@ -139,9 +134,9 @@ TEST_CASE("a patch whose normals cancel has the groups of its triangles' boxes")
 
 TEST_CASE("patches nearer than the radius by little more than rounding are neighbours") {
   const float gap = 0.0999999f;
-  Scene scene = test::empty_scene();
-  test::add_triangle(scene, {-1, 0, 0}, {0, 0, 0}, {0, 1, 0});
-  test::add_triangle(scene, {gap, 0, 0}, {1, 0, 0}, {gap, 1, 0});
+  Scene scene = empty_scene();
+  add_triangle(scene, {-1, 0, 0}, {0, 0, 0}, {0, 1, 0});
+  add_triangle(scene, {gap, 0, 0}, {1, 0, 0}, {gap, 1, 0});
   const NeighbourGroups groups =
       find_patch_groups(scene, {{0, 1, 2, 3}, {0, 1, 2}, {0, 2}}, {0.1, 60});
   CHECK(groups.of(0).size() == 2);
@@ -170,7 +165,7 @@ TEST_CASE("oriented faces without photons have empty groups, and the others thei
 
 TEST_CASE("photons that are still to come find the groups of triangles where none has landed") {
   const Scene scene = room_corner();
-  Photons photons = test::uniform_photons(scene, 20'000, 5);
+  Photons photons = uniform_photons(scene, 20'000, 5);
   std::fill(photons.oriented_face.begin(), photons.oriented_face.end(), 0u);
   photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
   const auto of_others = [&](MapUsers users) {
@@ -184,8 +179,7 @@ TEST_CASE("photons that are still to come find the groups of triangles where non
 }
 
 TEST_CASE("a flat surface is one patch, whatever its winding and the number of its triangles") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 10);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 10}});
   for (std::size_t t = 0; t < scene.triangle_count(); t += 3) {
     std::swap(scene.triangles[t].y, scene.triangles[t].z);
   }
@@ -198,9 +192,8 @@ TEST_CASE("a flat surface is one patch, whatever its winding and the number of i
 }
 
 TEST_CASE("distant plates in one plane stay apart") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3);
-  test::add_plate(scene, {50, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3);
+  Scene scene = scene_of_plates(
+      {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3}, {{50, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3}});
   CHECK(find_patches(scene, 0.1, MapMode::patch).count() == 2);
 }
 
@@ -216,8 +209,7 @@ TEST_CASE(
     apart.map_of.insert(apart.map_of.end(), {oriented(t, 0), oriented(t, 1)});
   }
   const NeighbourGroups groups = find_patch_groups(scene, apart, {radius, 60});
-  const NeighbourGroups merged =
-      merge_patches(scene, groups, test::uniform_photons(scene, 20'000, 4));
+  const NeighbourGroups merged = merge_patches(scene, groups, uniform_photons(scene, 20'000, 4));
   check_groups(scene, merged);
   CHECK(merged.patches.count() < apart.count() / 4);
   // The two faces of the table top are 2 cm apart, a fifth of the radius: what faces up of either
@@ -238,10 +230,10 @@ TEST_CASE("a patch joins another only where its queries would not look at most p
   // that photons of the floor are neighbours on both, and those of one slope none on the other.
   const float across = 0.05f * std::cos(glm::radians(50.0f));
   const float down = 0.05f * std::sin(glm::radians(50.0f));
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {across, 0, -down}, {0, 0.05f, 0}, 1);           // right
-  test::add_plate(scene, {-across, 0, -down}, {across, 0, down}, {0, 0.05f, 0}, 1);  // left
-  test::add_plate(scene, {-0.01f, 0, 0.01f}, {0.02f, 0, 0}, {0, 0.05f, 0}, 1);       // floor
+  Scene scene = empty_scene();
+  add_plate(scene, {0, 0, 0}, {across, 0, -down}, {0, 0.05f, 0}, 1);           // right
+  add_plate(scene, {-across, 0, -down}, {across, 0, down}, {0, 0.05f, 0}, 1);  // left
+  add_plate(scene, {-0.01f, 0, 0.01f}, {0.02f, 0, 0}, {0, 0.05f, 0}, 1);       // floor
   Patches patches;  // the right slope, and the left one with the floor
   patches.first_of = {0, 2, 6};
   for (std::uint32_t t = 0; t < 6; ++t) {
@@ -258,8 +250,8 @@ TEST_CASE("a patch joins another only where its queries would not look at most p
     for (std::uint32_t plate = 0; plate < 3; ++plate) {
       for (std::size_t i = 0; i < counts[plate]; ++i) {
         const std::uint32_t triangle = 2 * plate + i % 2;
-        test::add_photon(photons, scene, test::random_point(scene, triangle, random),
-                         oriented(triangle, 0), random);
+        add_photon(photons, scene, random_point(scene, triangle, random), oriented(triangle, 0),
+                   random);
       }
     }
     return merge_patches(scene, groups, sort_by_oriented_face(photons, 12)).patches.count();

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -255,7 +254,7 @@ TEST_CASE("triangle distance equals known answers") {
 
 // Boxes near a box, against a look at each.
 
-std::vector<geometry::Box> random_boxes(std::size_t count, test::Uniform& uniform) {
+std::vector<geometry::Box> random_boxes(std::size_t count, Uniform& uniform) {
   std::vector<geometry::Box> boxes(count);
   for (geometry::Box& box : boxes) {
     const glm::vec3 corner(uniform.point(0, 1));
@@ -267,7 +266,7 @@ std::vector<geometry::Box> random_boxes(std::size_t count, test::Uniform& unifor
 
 TEST_CASE("a tree visits every box within the distance, each once") {
   const std::size_t count = GENERATE(1u, 2u, 5u, 100u, 20'000u);  // the last is built in parallel
-  test::Uniform uniform(count);
+  Uniform uniform(count);
   std::vector<geometry::Box> boxes = random_boxes(count, uniform);
   if (count == 100) boxes.assign(count, boxes.front());  // all in one place
   const geometry::BoxTree tree(boxes);
@@ -289,7 +288,7 @@ TEST_CASE("a tree visits every box within the distance, each once") {
 
 TEST_CASE("a tree visits the boxes that overlap one, each once, and no others") {
   const std::size_t count = GENERATE(0u, 1u, 5u, 20'000u);
-  test::Uniform uniform(count);
+  Uniform uniform(count);
   const std::vector<geometry::Box> boxes = random_boxes(count, uniform);
   const geometry::BoxTree tree(boxes);
   std::vector<geometry::Box> queries = random_boxes(50, uniform);
@@ -320,7 +319,7 @@ TEST_CASE("a tree without boxes visits none, and a visit that returns true is th
   everywhere.extend(glm::vec3(1e6f));
   geometry::BoxTree(std::vector<geometry::Box>{}).visit_within(everywhere, 1, stop);
   CHECK(visits == 0);
-  test::Uniform uniform(1);
+  Uniform uniform(1);
   geometry::BoxTree(random_boxes(30, uniform)).visit_within(everywhere, 1, stop);
   CHECK(visits == 1);
 }
@@ -329,7 +328,7 @@ TEST_CASE("a tree without boxes visits none, and a visit that returns true is th
 
 /// Sheets, a dense lump, points that coincide, and one far away.
 std::vector<glm::vec3> uneven_positions(std::size_t count) {
-  test::Uniform uniform(count);
+  Uniform uniform(count);
   std::vector<glm::vec3> positions;
   for (std::size_t i = 0; i < count; ++i) {
     const glm::vec3 point(uniform.point(0, 4));

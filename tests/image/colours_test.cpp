@@ -1,13 +1,10 @@
 // From radiance to what a display shows.
-#include <bit>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "flat_picture.hpp"
 #include "image/display.hpp"
 #include "image/glare.hpp"
-#include "photile/errors.hpp"
-#include "photile/image.hpp"
 #include "picture_support.hpp"
 #include "report/palette.hpp"
 #include "two_lights.hpp"
@@ -15,29 +12,26 @@
 namespace photile::test {
 namespace {
 
-using namespace photile::image;
-using namespace photile::report;
-
-Image filled(std::size_t pixels, const glm::vec3& rgb) {
-  Image image;
-  image.width = static_cast<int>(pixels);
-  image.height = 1;
-  image.add("R").assign(pixels, rgb.r);
-  image.add("G").assign(pixels, rgb.g);
-  image.add("B").assign(pixels, rgb.b);
-  return image;
-}
+using namespace image;
+using namespace report;
 
 void set(Image& image, std::size_t pixel, const glm::vec3& rgb) {
   for (std::size_t c = 0; c < 3; ++c) image.channels[c][pixel] = rgb[static_cast<int>(c)];
+}
+
+Image filled(std::size_t pixels, const glm::vec3& rgb) {
+  Image image = flat_picture(static_cast<int>(pixels), 1);
+  for (std::size_t i = 0; i < pixels; ++i) set(image, i, rgb);
+  return image;
 }
 
 glm::vec3 at(const Image& image, std::size_t pixel) {
   return {image.channels[0][pixel], image.channels[1][pixel], image.channels[2][pixel]};
 }
 
-/// The sRGB curve alone: what is below white stays.
+/// The sRGB curve alone: what is below white stays. By an exposure of its own, and by none.
 const ToneMapping standard{.view = DisplayView::standard};
+const ToneMapping as_it_is{.automatic_exposure = false, .view = DisplayView::standard};
 
 glm::dvec3 neutral(const glm::vec3& rgb) {
   return glm::dvec3(at(tone_map(filled(1, rgb), {.automatic_exposure = false}), 0));
@@ -74,8 +68,7 @@ TEST_CASE("pixels that see a lamp, a black background or nothing finite do not s
 
 TEST_CASE("a stop of exposure doubles, and without automatic exposure values stay") {
   const Image image = filled(4, {0.1f, 0.2f, 0.05f});
-  ToneMapping manual = standard;
-  manual.automatic_exposure = false;
+  ToneMapping manual = as_it_is;
   CHECK(at(tone_map(image, manual), 0) == glm::vec3(0.1f, 0.2f, 0.05f));
   manual.exposure = 1.0;
   CHECK(at(tone_map(image, manual), 0) == glm::vec3(0.2f, 0.4f, 0.1f));
@@ -85,9 +78,7 @@ TEST_CASE("a stop of exposure doubles, and without automatic exposure values sta
 }
 
 TEST_CASE("through the sRGB curve alone a pixel brighter than white is scaled as a whole") {
-  ToneMapping manual = standard;
-  manual.automatic_exposure = false;
-  const glm::vec3 shown = at(tone_map(filled(1, {8.0f, 4.0f, 2.0f}), manual), 0);
+  const glm::vec3 shown = at(tone_map(filled(1, {8.0f, 4.0f, 2.0f}), as_it_is), 0);
   CHECK(shown == glm::vec3(1.0f, 0.5f, 0.25f));
 }
 
@@ -136,37 +127,26 @@ TEST_CASE("the neutral view keeps order and hue and never exceeds white") {
 TEST_CASE("a pixel on the border of a lamp shows the part of it that the lamp fills") {
   // Columns: a wall, a border that the lamp fills by a quarter, and the lamp.
   const double wall = 0.2, lamp = 16, border = 0.75 * wall + 0.25 * lamp;
-  Image image = filled(6, glm::vec3(0.0f));
-  image.width = 3;
-  image.height = 2;
+  Image image = flat_picture(3, 2);
   for (std::size_t y = 0; y < 2; ++y) {
     set(image, 3 * y, glm::vec3(static_cast<float>(wall)));
     set(image, 3 * y + 1, glm::vec3(static_cast<float>(border)));
     set(image, 3 * y + 2, glm::vec3(static_cast<float>(lamp)));
   }
-  ToneMapping manual = standard;
-  manual.automatic_exposure = false;
-  const Image shown = tone_map(image, manual);
+  const Image shown = tone_map(image, as_it_is);
   CHECK(at(shown, 1).g == Approx(0.75 * wall + 0.25).epsilon(1e-5));
   CHECK(at(shown, 0).g == Approx(wall));
   CHECK(at(shown, 2).g == 1.0f);
   // Without a lamp beside them bright pixels are white.
   for (std::size_t y = 0; y < 2; ++y) set(image, 3 * y + 2, glm::vec3(3.9f));
-  CHECK(at(tone_map(image, manual), 1).g == 1.0f);
+  CHECK(at(tone_map(image, as_it_is), 1).g == 1.0f);
 }
 
 TEST_CASE("tone mapping gives values in [0,1] for every float") {
   using Limits = std::numeric_limits<float>;
-  const float awkward[] = {0.0f,
-                           -0.0f,
-                           1.0f,
-                           -5.0f,
-                           Limits::max(),
-                           Limits::lowest(),
-                           Limits::denorm_min(),
-                           Limits::infinity(),
-                           -Limits::infinity(),
-                           Limits::quiet_NaN()};
+  const std::vector<float> awkward({0.0f, -0.0f, 1.0f, -5.0f, Limits::max(), Limits::lowest(),
+                                    Limits::denorm_min(), Limits::infinity(), -Limits::infinity(),
+                                    Limits::quiet_NaN()});
   std::vector<glm::vec3> colors;
   for (const float r : awkward) {
     for (const float g : awkward) {
@@ -273,7 +253,7 @@ LightLayers even(float a, float b) {
   return layers;
 }
 
-LightMix mix_of(double a, double b) { return test::two_lights("a", a, "b", b); }
+LightMix mix_of(double a, double b) { return two_lights("a", a, "b", b); }
 
 TEST_CASE("a limit up to 100 counts in mean luminances of the picture, above in cd/m2") {
   const LightLayers none = even(0, 0);
@@ -313,12 +293,7 @@ TEST_CASE("glare of pictures of different sizes is refused") {
 
 constexpr int side = 32;
 
-Image grey(float value) {
-  Image image;
-  image.width = image.height = side;
-  for (const char* channel : {"R", "G", "B"}) image.add(channel).assign(side * side, value);
-  return image;
-}
+Image grey(float value) { return flat_picture(side, side, value); }
 
 void scale(Image& image, float factor) {
   for (auto& plane : image.channels) {
@@ -399,12 +374,8 @@ TEST_CASE("a region that mostly sees lamps is never the worst") {
 
 TEST_CASE("pictures that cannot be compared are refused") {
   const Image reference = grey(1.0f);
-  Image other = grey(1.0f);
-  other.width = side / 2;
-  CHECK_THROWS_AS(picture_error(other, reference), UsageError);
-  Image bare;
-  bare.width = bare.height = side;
-  CHECK_THROWS_AS(picture_error(bare, reference), UsageError);
+  CHECK_THROWS_AS(picture_error(flat_picture(side / 2, side, 1), reference), UsageError);
+  CHECK_THROWS_AS(picture_error(flat_picture(side, side, 1, {}), reference), UsageError);
   CHECK_THROWS_AS(picture_error(reference, grey(0.0f)), InputError);
 }
 

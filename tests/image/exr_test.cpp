@@ -7,8 +7,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 
-#include "photile/layered_picture.hpp"
+#include "flat_picture.hpp"
 #include "photile/limits.hpp"
 #include "picture_support.hpp"
 
@@ -20,13 +21,10 @@ using Catch::Contains;
 /// 5 x 3 pixels: smaller than any block, with values that a float format may lose.
 Image awkward_picture() {
   using Limits = std::numeric_limits<float>;
-  Image image;
-  image.width = 5;
-  image.height = 3;
   // Not in the order of the file: the root comes last here.
-  for (const char* name :
-       {"Combined_floor lamp.R", "Illuminance_floor lamp.Y", "B", "A", "G", "R"}) {
-    std::vector<float>& plane = image.add(name);
+  Image image = flat_picture(
+      5, 3, 0, {"Combined_floor lamp.R", "Illuminance_floor lamp.Y", "B", "A", "G", "R"});
+  for (std::vector<float>& plane : image.channels) {
     for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = 0.1f * static_cast<float>(i) + 0.3f;
   }
   std::vector<float>& red = image.channels.back();
@@ -79,11 +77,8 @@ TEST_CASE("an EXR keeps every float, name, string, number and matrix, bit for bi
 
 TEST_CASE("a picture of more rows than one write takes keeps its pixels") {
   const TemporaryFolder folder;
-  Image written;
-  written.width = 3;
-  written.height = 201;
-  std::vector<float>& plane = written.add("R");
-  for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = static_cast<float>(i);
+  Image written = flat_picture(3, 201, 0, {"R"});
+  std::iota(written.channels[0].begin(), written.channels[0].end(), 0.0f);
   write_exr(folder / "tall.exr", written);
   CHECK(same_bits(*read_image(folder / "tall.exr").find("R"), written.channels[0]));
 }
@@ -128,8 +123,7 @@ TEST_CASE("an EXR's header is what OpenEXR's standard attributes and OpenImageIO
 
 TEST_CASE("oiiotool lists the root and every layer of a mixed picture") {
   const TemporaryFolder folder;
-  LightMix mix;
-  mix.lights = {mixed("lamp", 10), mixed("ceiling light", 20)};
+  LightMix mix{{mixed("lamp", 10), mixed("ceiling light", 20)}};
   write_exr(folder / "a.exr", mix_layers(random_layers(4, 4, {"lamp", "ceiling light"}), mix));
   const std::string info = output_of("oiiotool --info -v '" + (folder / "a.exr").string() + "'");
   INFO(info);
@@ -167,8 +161,7 @@ void check_equal_to_sum(const LightLayers& layers, const LightMix& mix) {
 }
 
 TEST_CASE("combined layers are the bits of the sum of mixed ones, at sizes around the blocks") {
-  LightMix mix;
-  mix.lights = {mixed("a", 812.5), mixed("b", 3.1), mixed("c", 47.0)};
+  LightMix mix{{mixed("a", 812.5), mixed("b", 3.1), mixed("c", 47.0)}};
   mix.lights[1].tint = {2.0f, 1.0f, 0.5f};
   for (const int width : {1, 15, 16, 17, 1023, 1024, 1025, 5000}) {
     CAPTURE(width);
@@ -192,8 +185,7 @@ TEST_CASE("combined sparse layers are the bits of the sum of mixed ones") {
 TEST_CASE("a combined light that is off adds nothing, even where its layer is infinite") {
   LightLayers layers = random_layers(40, 2, {"a", "b"});
   layers.layers[1].radiance[20] = glm::vec3(std::numeric_limits<float>::infinity());
-  LightMix mix;
-  mix.lights = {mixed("a", 2.0), mixed("b", 0.0)};
+  LightMix mix{{mixed("a", 2.0), mixed("b", 0.0)}};
   check_equal_to_sum(layers, mix);
   mix.lights[1] = mixed("b", 1.0);
   mix.lights[1].tint = {1.0f, 0.0f, 1.0f};
@@ -210,8 +202,7 @@ TEST_CASE("no layers combine to black") {
 
 TEST_CASE("combining refuses a picture of another size and a mix without the light") {
   const LightLayers layers = random_layers(3, 2, {"a"});
-  LightMix mix;
-  mix.lights = {mixed("a", 1.0)};
+  LightMix mix{{mixed("a", 1.0)}};
   std::vector<glm::vec3> picture(5);
   CHECK_THROWS_AS(combine_layers(layers, mix, picture), UsageError);
   picture.resize(6);
@@ -345,8 +336,7 @@ TEST_CASE("extremes: from 1e-12 to 1e12 and back, relighting errs by a few round
 
 TEST_CASE("extremes: the exposure of a picture does not depend on the unit of its radiance") {
   const LightLayers layers = random_layers(9, 7, {"lamp"});
-  LightMix mix;
-  mix.lights = {mixed("lamp", 1)};
+  LightMix mix{{mixed("lamp", 1)}};
   const Image expected = tone_map(mix_layers(layers, mix), {});
   for (const double power : {1e-30, 1e-12, 1e12, 1e30}) {
     mix.lights[0].power = power;
@@ -444,8 +434,7 @@ TEST_CASE("an alpha that is no number is none") {
 }
 
 TEST_CASE("a rendered light of the greatest power stays finite in every channel, and is told") {
-  LightMix mix;
-  mix.lights = {mixed("sun", limits::max_light_power), mixed("lamp", 1)};
+  LightMix mix{{mixed("sun", limits::max_light_power), mixed("lamp", 1)}};
   LightLayers layers = random_layers(9, 70, {"sun", "lamp"});
   for (float& value : layers.layers[0].illuminance) value = 1e12f;  // of a lamp of a micrometre
   const auto picture = mixed_picture(layers, mix);
@@ -457,8 +446,7 @@ TEST_CASE("a rendered light of the greatest power stays finite in every channel,
 }
 
 TEST_CASE("of a sound picture nothing is told") {
-  LightMix mix;
-  mix.lights = {mixed("a", 3), mixed("b", 5)};
+  LightMix mix{{mixed("a", 3), mixed("b", 5)}};
   const LightLayers layers = random_layers(9, 70, {"a", "b"});
   const auto picture = mixed_picture(layers, mix);
   CHECK(is_finite(to_image(*picture)));

@@ -13,41 +13,12 @@ namespace {
 
 /// Bytes at random, among which those that mean something are frequent.
 std::string any_text(std::mt19937& dice) {
-  static const std::vector<std::string> pieces{"=",
-                                               "+",
-                                               "-",
-                                               "@",
-                                               "\t",
-                                               "\r",
-                                               "\n",
-                                               "\"",
-                                               ",",
-                                               ";",
-                                               "<",
-                                               ">",
-                                               "&",
-                                               "'",
-                                               "]]>",
-                                               "<!--",
-                                               "</script>",
-                                               "\x1B[2J",
-                                               "\x9B"
-                                               "2J",
-                                               "\xC2\x9B",
-                                               "\x7F",
-                                               std::string(1, '\0'),
-                                               "\xC3\xA9",
-                                               "\xE2\x82\xAC",
-                                               "\xF0\x9F\x92\xA1",
-                                               "\xC3",
-                                               "\xE2\x82",
-                                               "\xED\xA0\x80",
-                                               "\xC0\xAF",
-                                               "\xEF\xBF\xBF",
-                                               "\xFF",
-                                               "lamp",
-                                               " ",
-                                               "\\"};
+  std::vector<std::string> pieces{
+      "]]>",          "<!--",         "</script>",        "\x1B[2J",  "\2332J",       "\xC2\x9B",
+      "\xC3\xA9",     "\xE2\x82\xAC", "\xF0\x9F\x92\xA1", "\xE2\x82", "\xED\xA0\x80", "\xC0\xAF",
+      "\xEF\xBF\xBF", "lamp"};
+  // And of one byte each, with the 0 at their end.
+  for (const char one : "=+-@\t\r\n\",;<>&' \\\x7F\xC3\xFF") pieces.emplace_back(1, one);
   std::string text;
   const int count = std::uniform_int_distribution(0, 8)(dice);
   for (int i = 0; i < count; ++i) {

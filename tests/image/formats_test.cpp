@@ -1,17 +1,14 @@
 // Every format that is read: the values that other programs read or wrote there, and what damaged
 // files come to.
-#include <OpenImageIO/imageio.h>
-
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <optional>
-#include <random>
 #include <sstream>
 #include <type_traits>
 
-#include "image/decoder.hpp"
 #include "image/picture_checks.hpp"
+#include "oiio_pictures.hpp"
 #include "picture_support.hpp"
 #include "source_folder.hpp"
 
@@ -111,10 +108,6 @@ std::filesystem::path write(const TemporaryFolder& folder, const Kind& kind) {
   return file;
 }
 
-std::span<const unsigned char> span_of(const std::string& bytes) {
-  return {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()};
-}
-
 /// The decoded values, as shares of the largest of their type.
 std::vector<double> shares_of(const image::Pixels& pixels) {
   return std::visit(
@@ -173,7 +166,7 @@ Written read_written(const std::filesystem::path& file) {
 /// What any bytes give: a picture, whose values these are, or an error.
 std::optional<image::Pixels> picture_of(const std::string& name, const std::string& bytes) {
   try {
-    const auto decoder = image::open_picture(name, span_of(bytes));
+    const auto decoder = opened(name, bytes);
     const image::PictureShape shape = decoder->shape();
     REQUIRE(shape.width > 0);
     REQUIRE(shape.height > 0);
@@ -207,7 +200,7 @@ TEST_CASE("pictures of every format have the values that another library reads i
     ++pictures;
     const Written expected = read_written(entry.path());
     const std::string bytes = bytes_of(file);
-    const auto decoder = image::open_picture(file.string(), span_of(bytes));
+    const auto decoder = opened(file.string(), bytes);
     const image::PictureShape shape = decoder->shape();
     REQUIRE(shape.width == expected.shape.width);
     REQUIRE(shape.height == expected.shape.height);
@@ -239,7 +232,7 @@ TEST_CASE("pictures of every format that keeps them have the values that were wr
             kind.attribute != nullptr ? kind.attribute : "");
     const TemporaryFolder folder;
     const std::string bytes = bytes_of(write(folder, kind));
-    const auto decoder = image::open_picture(kind.file, span_of(bytes));
+    const auto decoder = opened(kind.file, bytes);
     REQUIRE(decoder->shape().width == width);
     REQUIRE(decoder->shape().height == height);
     REQUIRE(decoder->shape().channels == kind.channels);
@@ -312,18 +305,15 @@ TEST_CASE("a PNG whose text ends beyond the file is refused before libpng takes 
   using namespace std::string_literals;
   const std::string png =
       "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x8\0\0\0\0\x3a\x7e\x9b\x55\x7f\xff\xff\xfftEXt"s;
-  CHECK_THROWS_WITH(image::open_picture("a.png", span_of(png)), "the file ends too early");
+  CHECK_THROWS_WITH(opened("a.png", png), "the file ends too early");
 }
 
 TEST_CASE("a WebP that is wide and low is read") {
   const TemporaryFolder folder;
-  const auto output = OIIO::ImageOutput::create("webp");
-  REQUIRE(
-      output->open((folder / "a.webp").string(), OIIO::ImageSpec(1'100, 4, 3, TypeDesc::UINT8)));
-  REQUIRE(output->write_image(TypeDesc::UINT8, std::vector<unsigned char>(1'100 * 4 * 3).data()));
-  REQUIRE(output->close());
+  write_by_oiio(folder / "a.webp", OIIO::ImageSpec(1'100, 4, 3, TypeDesc::UINT8),
+                std::vector<unsigned char>(1'100 * 4 * 3));
   const std::string bytes = bytes_of(folder / "a.webp");
-  CHECK(image::open_picture("a.webp", span_of(bytes))->shape().width == 1'100);
+  CHECK(opened("a.webp", bytes)->shape().width == 1'100);
 }
 
 }  // namespace photile::test

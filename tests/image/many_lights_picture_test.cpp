@@ -3,7 +3,6 @@
 
 #include "file_limits.hpp"
 #include "memory_meter.hpp"
-#include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
 #include "picture_support.hpp"

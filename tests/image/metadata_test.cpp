@@ -7,15 +7,13 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
-#include <OpenImageIO/imageio.h>
 #include <zlib.h>
 
 #include <array>
-#include <cmath>
 #include <functional>
 
-#include "image/decoder.hpp"
 #include "image/picture_metadata.hpp"
+#include "oiio_pictures.hpp"
 #include "photile/image.hpp"
 #include "photile/scene.hpp"
 #include "picture_support.hpp"
@@ -26,12 +24,8 @@ namespace {
 
 using namespace std::string_literals;
 
-std::span<const unsigned char> bytes_of_text(const std::string& bytes) {
-  return {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()};
-}
-
 std::vector<float> light_of(const std::string& name, const std::string& bytes) {
-  return image::open_picture(name, bytes_of_text(bytes))->light();
+  return opened(name, bytes)->light();
 }
 
 /// Pixels of mantissas (r, g, b), times 2^-8 by their exponent 128.
@@ -112,8 +106,6 @@ std::string srgb_curve() {
          fixed(1 / 12.92) + fixed(0.04045);
 }
 
-}  // namespace
-
 TEST_CASE("pixels of a Radiance picture are divided by all its exposures and corrections") {
   const std::vector<std::array<int, 3>> grey{{128, 128, 128}};
   const auto pixel = [&](const std::string& lines) {
@@ -158,7 +150,7 @@ TEST_CASE("each of the eight resolution strings of a Radiance picture places its
         const std::string size = by_rows ? y + " " + x : x + " " + y;
         CAPTURE(size);
         const std::string bytes = radiance("", size, stored);
-        const auto picture = image::open_picture("a.hdr", bytes_of_text(bytes));
+        const auto picture = opened("a.hdr", bytes);
         REQUIRE(picture->shape().width == 3);
         REQUIRE(picture->shape().height == 2);
         const std::vector<float> light = picture->light();
@@ -174,7 +166,7 @@ TEST_CASE("each of the eight resolution strings of a Radiance picture places its
 TEST_CASE("a Radiance picture in XYZ has the luminance of its Y, in cd/m2") {
   const std::string bytes =
       radiance("EXPOSURE=2\n", "-Y 1 +X 2", {{200, 200, 200}, {100, 180, 60}}, "32-bit_rle_xyze");
-  const auto picture = image::open_picture("a.hdr", bytes_of_text(bytes));
+  const auto picture = opened("a.hdr", bytes);
   CHECK(picture->metadata().white_luminance == 1);
   const std::vector<float> light = picture->light();
   const auto rgb = [&](std::size_t i) { return glm::dvec3(light[i], light[i + 1], light[i + 2]); };
@@ -206,8 +198,6 @@ TEST_CASE("primaries become Rec.709's with the luminance that they had") {
       image::DecodeError);
 }
 
-namespace {
-
 /// An EXR of the data window, whose pixels are 1, 2, 3, ... in rows, in each of the channels.
 void write_window(const std::filesystem::path& file, const Imath::Box2i& display,
                   const Imath::Box2i& data, const std::vector<std::string>& channels,
@@ -231,8 +221,6 @@ void write_window(const std::filesystem::path& file, const Imath::Box2i& display
 
 const std::vector<std::string> rgb_channels{"R", "G", "B"};
 
-}  // namespace
-
 TEST_CASE("the pixels of an EXR lie in its display window") {
   const TemporaryFolder folder;
   const Imath::Box2i display({0, 0}, {3, 2});
@@ -251,8 +239,7 @@ TEST_CASE("the pixels of an EXR lie in its display window") {
   CHECK(*read_image(folder / "moved.exr").find("B") == std::vector<float>{1, 2});
   write_window(folder / "beside.exr", {{0, 0}, {1, 0}}, {{5, 0}, {6, 0}}, rgb_channels);
   CHECK(*read_image(folder / "beside.exr").find("B") == std::vector<float>{0, 0});
-  const std::string bytes = bytes_of(folder / "crop.exr");
-  CHECK(light_of("a.exr", bytes)[3 * 5 + 1] == 1);
+  CHECK(light_of("a.exr", bytes_of(folder / "crop.exr"))[3 * 5 + 1] == 1);
 }
 
 TEST_CASE("an EXR's chromaticities, white luminance and projection are taken") {
@@ -271,12 +258,12 @@ TEST_CASE("an EXR's chromaticities, white luminance and projection are taken") {
     CHECK((*aces.find(channel))[1] == Approx(2).epsilon(1e-5));
   }
   const std::string bytes = bytes_of(folder / "aces.exr");
-  CHECK(image::open_picture("a.exr", bytes_of_text(bytes))->metadata().white_luminance == 80);
+  CHECK(opened("a.exr", bytes)->metadata().white_luminance == 80);
   write_window(
       folder / "cube.exr", {{0, 0}, {0, 5}}, {{0, 0}, {0, 5}}, rgb_channels,
       [](Imf::Header& header) { header.insert("envmap", Imf::EnvmapAttribute(Imf::ENVMAP_CUBE)); });
   const std::string cube = bytes_of(folder / "cube.exr");
-  CHECK(image::open_picture("a.exr", bytes_of_text(cube))->metadata().projection == "a cube map");
+  CHECK(opened("a.exr", cube)->metadata().projection == "a cube map");
 }
 
 TEST_CASE("the picture of an EXR is its R, G and B, or Y, or its one layer") {
@@ -285,7 +272,7 @@ TEST_CASE("the picture of an EXR is its R, G and B, or Y, or its one layer") {
   const auto channels_of = [&](const std::vector<std::string>& channels) {
     write_window(folder / "a.exr", window, window, channels);
     const std::string bytes = bytes_of(folder / "a.exr");
-    return image::open_picture("a.exr", bytes_of_text(bytes))->shape().channels;
+    return opened("a.exr", bytes)->shape().channels;
   };
   CHECK(channels_of({"A", "B", "G", "R", "Z"}) == 4);
   CHECK(channels_of({"Y"}) == 1);
@@ -317,23 +304,19 @@ TEST_CASE("the orientation that EXIF names turns a picture upright") {
     for (int orientation = 1; orientation <= 8; ++orientation) {
       CAPTURE(name, orientation);
       const TemporaryFolder folder;
-      const std::string file = (folder / name).string();
       // Stored: black on the left, white on the right.
       OIIO::ImageSpec spec(16, 8, 3, OIIO::TypeDesc::UINT8);
       spec["Orientation"] = orientation;
       std::vector<unsigned char> texels;
       for (int i = 0; i < 16 * 8 * 3; ++i) texels.push_back(i / 3 % 16 < 8 ? 0 : 255);
-      const auto output = OIIO::ImageOutput::create(file);
-      REQUIRE(output->open(file, spec));
-      REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, texels.data()));
-      REQUIRE(output->close());
-      std::string bytes = bytes_of(file);
+      write_by_oiio(folder / name, spec, texels);
+      std::string bytes = bytes_of(folder / name);
       if (name == std::string("a.png")) {  // its writer has no such chunk
         const std::string exif = "MM\0*\0\0\0\x8\0\1\x1\x12\0\3\0\0\0\1\0"s +
                                  static_cast<char>(orientation) + "\0\0\0\0\0\0"s;
         bytes.insert(33, chunk("eXIf", exif));
       }
-      const auto picture = image::open_picture(name, bytes_of_text(bytes));
+      const auto picture = opened(name, bytes);
       const bool turned = orientation > 4;
       REQUIRE(picture->shape().width == (turned ? 8 : 16));
       const std::vector<float> light = picture->light();
@@ -384,24 +367,21 @@ TEST_CASE("the colours of a PNG are those that its chunks name") {
 }
 
 TEST_CASE("sRGB's own profile is sRGB, and changes no bit") {
-  const auto space = image::icc_space(bytes_of_text(profile(srgb, srgb_curve())));
+  const auto space = image::icc_space(span_of(profile(srgb, srgb_curve())));
   CHECK(space.is_srgb());
-  CHECK_FALSE(image::icc_space(bytes_of_text(profile(p3, srgb_curve()))).is_srgb());
+  CHECK_FALSE(image::icc_space(span_of(profile(p3, srgb_curve()))).is_srgb());
 }
 
 TEST_CASE("colours that are no RGB are refused by their name") {
   const TemporaryFolder folder;
-  const std::string file = (folder / "a.tif").string();
-  const auto output = OIIO::ImageOutput::create(file);
-  REQUIRE(output->open(file, OIIO::ImageSpec(1, 1, 3, OIIO::TypeDesc::UINT8)));
-  const std::array<unsigned char, 3> texel{1, 2, 3};
-  REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, texel.data()));
-  REQUIRE(output->close());
-  std::string bytes = bytes_of(file);
-  const auto entry = image::tiff_entry(bytes_of_text(bytes), 262);
+  write_by_oiio(folder / "a.tif", OIIO::ImageSpec(1, 1, 3, OIIO::TypeDesc::UINT8),
+                std::vector<unsigned char>{1, 2, 3});
+  std::string bytes = bytes_of(folder / "a.tif");
+  const auto entry = image::tiff_entry(span_of(bytes), 262);
   REQUIRE(entry);
   bytes[*entry + 8] = 8;  // CIE L*a*b*
-  CHECK_THROWS_WITH(image::open_picture("a.tif", bytes_of_text(bytes)), Catch::Contains("L*a*b*"));
+  CHECK_THROWS_WITH(opened("a.tif", bytes), Catch::Contains("L*a*b*"));
 }
 
+}  // namespace
 }  // namespace photile::test

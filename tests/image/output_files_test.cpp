@@ -1,11 +1,11 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstring>
 
 #include "common/files.hpp"
 #include "file_limits.hpp"
+#include "flat_picture.hpp"
 #include "held_to_permissions.hpp"
 #include "picture_support.hpp"
 
@@ -16,13 +16,11 @@ namespace fs = std::filesystem;
 namespace {
 
 Image noise(int width, int height) {
-  Image image;
-  image.width = width;
-  image.height = height;
+  Image image = flat_picture(width, height);
   std::mt19937 engine(3);
   std::uniform_real_distribution<float> value(0.0f, 1.0f);
-  for (const char* name : {"R", "G", "B"}) {
-    for (float& pixel : image.add(name)) pixel = value(engine);
+  for (std::vector<float>& channel : image.channels) {
+    for (float& pixel : channel) pixel = value(engine);
   }
   return image;
 }
@@ -199,10 +197,7 @@ TEST_CASE("a finished file replaces an earlier one, alone in its folder, and fol
 TEST_CASE("a picture without pixels or without R, G, B cannot be written") {
   const TemporaryFolder folder;
   CHECK_THROWS_AS(write_exr(folder / "a.exr", Image{}), OutputError);
-  Image grey;
-  grey.width = grey.height = 1;
-  grey.add("Y");
-  CHECK_THROWS_AS(write_png(folder / "a.png", grey), OutputError);
+  CHECK_THROWS_AS(write_png(folder / "a.png", flat_picture(1, 1, 0, {"Y"})), OutputError);
   CHECK(files_in(folder.path) == 0);
 }
 

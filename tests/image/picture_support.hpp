@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "file_bytes.hpp"
+#include "image/decoder.hpp"
 #include "message_of.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
@@ -21,6 +22,15 @@ namespace photile::test {
 
 inline std::filesystem::path operator/(const TemporaryFolder& folder, const std::string& name) {
   return folder.path / name;
+}
+
+inline std::span<const unsigned char> span_of(const std::string& bytes) {
+  return {reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()};
+}
+
+/// A decoder of bytes, which have to outlive it.
+inline auto opened(const std::string& name, const std::string& bytes) {
+  return image::open_picture(name, span_of(bytes));
 }
 
 /// Equal bit for bit, so that NaN equals itself and 0 differs from -0.

@@ -21,12 +21,24 @@ const MixedLight& light_of(const LightMix& mix, const std::string& name) {
   throw std::runtime_error("no light " + name);
 }
 
+/// A copy of a scene with changed lights.
+struct ChangedCopy {
+  ChangedCopy(const std::filesystem::path& file, const std::vector<LightChange>& changes,
+              const std::string& name = "a", const SceneLoadOptions& options = {})
+      : mix(LightMix::of(load_scene(file, options), 683)) {
+    change_lights(mix, changes);
+    written = writing::write_edited_scene(file, options, mix, name);
+  }
+  LightMix mix;  ///< what it is to hold
+  writing::EditedScene written;
+};
+
 /// The lights of a copy beside what they were to be: lamps that are off are gone.
-void check_reads_back(const std::filesystem::path& copy, const LightMix& requested,
-                      const SceneLoadOptions& options = {}) {
-  const LightMix read = LightMix::of(load_scene(copy, options), 683);
+void check_reads_back(const ChangedCopy& copy) {
+  CHECK(copy.written.left_out.empty());
+  const LightMix read = LightMix::of(load_scene(copy.written.file), 683);
   std::size_t lit = 0;
-  for (const MixedLight& light : requested.lights) {
+  for (const MixedLight& light : copy.mix.lights) {
     if (light.power == 0) continue;
     ++lit;
     const MixedLight& again = light_of(read, light.name);
@@ -70,12 +82,7 @@ std::filesystem::path write_scene(const SceneFolderOnDisk& folder, const nlohman
 /// A copy of the scene with changed lights is read as they are.
 void check_copy(const nlohmann::json& document, const std::vector<LightChange>& changes) {
   const SceneFolderOnDisk folder;
-  const auto file = write_scene(folder, document);
-  LightMix mix = LightMix::of(load_scene(file), 683);
-  change_lights(mix, changes);
-  const writing::EditedScene copy = writing::write_edited_scene(file, {}, mix, "a");
-  CHECK(copy.left_out.empty());
-  check_reads_back(copy.file, mix);
+  check_reads_back(ChangedCopy(write_scene(folder, document), changes));
 }
 
 }  // namespace
@@ -84,32 +91,25 @@ TEST_CASE("lights that share a definition or a mesh are set apart in a copy of a
   const SceneFolderOnDisk folder;
   const auto file = write_scene(folder, shared_document());
   const std::string before = bytes_of(file);
-  LightMix mix = LightMix::of(load_scene(file), 683);
-  change_lights(mix, {{"lamp", "50"},
-                      {"bulb", "x3"},
-                      {"bulb", "2700K"},
-                      {"panel", "x0.25"},
-                      {"second", "#80ff40"}});
-  const writing::EditedScene copy = writing::write_edited_scene(file, {}, mix, "late evening");
-  CHECK(copy.file.filename() == "room.late_evening.gltf");
-  CHECK(copy.left_out.empty());
-  check_reads_back(copy.file, mix);
+  const ChangedCopy copy(file,
+                         {{"lamp", "50"},
+                          {"bulb", "x3"},
+                          {"bulb", "2700K"},
+                          {"panel", "x0.25"},
+                          {"second", "#80ff40"}},
+                         "late evening");
+  CHECK(copy.written.file.filename() == "room.late_evening.gltf");
+  check_reads_back(copy);
   CHECK(bytes_of(file) == before);
 }
 
 TEST_CASE("instances of one lamp stay one in a copy of a glTF file") {
-  const SceneFolderOnDisk folder;
   nlohmann::json document = instances_document();
   document["meshes"].push_back(document["meshes"][0]);  // of the same material, set by itself
   document["nodes"].push_back({{"name", "third"}, {"mesh", 1}, {"translation", {0, 0, 5}}});
   document["scenes"][0]["nodes"].push_back(4);
-  const auto file = write_scene(folder, document);
-  LightMix mix = LightMix::of(load_scene(file), 683);
-  REQUIRE(mix.lights.size() == 3);
-  change_lights(mix, {{"lamp", "50"}, {"lamp", "2700K"}, {"panel", "x0.25"}});
-  const writing::EditedScene copy = writing::write_edited_scene(file, {}, mix, "evening");
-  CHECK(copy.left_out.empty());
-  check_reads_back(copy.file, mix);
+  REQUIRE(LightMix::of(load_gltf(document), 683).lights.size() == 3);
+  check_copy(document, {{"lamp", "50"}, {"lamp", "2700K"}, {"panel", "x0.25"}});
 }
 
 TEST_CASE("nodes outside the scene may name what no file can hold") {
@@ -130,10 +130,10 @@ TEST_CASE("what photile_lumens and photile_kelvin say follows in a copy") {
   nlohmann::json document = shared_document();
   document["nodes"][0]["extras"].update(
       nlohmann::json{{"photile_lumens", 1200}, {"photile_kelvin", 4000}});
-  document["nodes"][2]["extras"].update(
-      nlohmann::json{{"photile_lumens", 300}, {"photile_kelvin", 3000}});
-  document["nodes"][3]["extras"].update(
-      nlohmann::json{{"photile_lumens", 300}, {"photile_kelvin", 3000}});
+  for (const int node : {2, 3}) {
+    document["nodes"][node]["extras"].update(
+        nlohmann::json{{"photile_lumens", 300}, {"photile_kelvin", 3000}});
+  }
   check_copy(document,
              {{"panel", "500"}, {"panel", "5000K"}, {"lamp", "100"}, {"bulb", "#ff0000"}});
 }
@@ -146,37 +146,21 @@ TEST_CASE("lights of a group are scaled and tinted together in a copy") {
 
 TEST_CASE("a copy of a GLB keeps what follows its JSON") {
   const SceneFolderOnDisk folder;
-  nlohmann::json document = shared_document();
-  document["buffers"][0].erase("uri");
-  std::string text = document.dump(), buffer = square_buffer();
-  text.append((4 - text.size() % 4) % 4, ' ');
-  const auto word = [](std::size_t value) {
-    return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(value)});
-  };
-  const auto file = folder.write(
-      "room.glb", "glTF" + word(2) + word(28 + text.size() + buffer.size()) + word(text.size()) +
-                      "JSON" + text + word(buffer.size()) + std::string("BIN\0", 4) + buffer);
-  LightMix mix = LightMix::of(load_scene(file), 683);
-  change_lights(mix, {{"lamp", "x0.1"}, {"second", "x7"}});
-  const auto copy = writing::write_edited_scene(file, {}, mix, "a");
-  CHECK(copy.file.extension() == ".glb");
-  check_reads_back(copy.file, mix);
+  const ChangedCopy copy(folder.write("room.glb", glb_of(shared_document())),
+                         {{"lamp", "x0.1"}, {"second", "x7"}});
+  CHECK(copy.written.file.extension() == ".glb");
+  check_reads_back(copy);
 }
 
 TEST_CASE("the bundled living room is copied with a mood") {
   const SceneFolderOnDisk folder;
-  std::filesystem::copy(test::source_folder() / "scenes/living-room", folder.path,
+  std::filesystem::copy(source_folder() / "scenes/living-room", folder.path,
                         std::filesystem::copy_options::recursive);
-  const auto file = folder.path / "living-room.gltf";
-  LightMix mix = LightMix::of(load_scene(file), 683);
-  change_lights(mix, {{"daylight", "off"},
-                      {"floor_lamp", "400"},
-                      {"desk_lamp", "3000K"},
-                      {"sconce_left", "#ffd9a0"},
-                      {"picture_spot", "x2"}});
-  const auto copy = writing::write_edited_scene(file, {}, mix, "evening");
-  CHECK(copy.left_out.empty());
-  check_reads_back(copy.file, mix);
+  check_reads_back(ChangedCopy(folder.path / "living-room.gltf", {{"daylight", "off"},
+                                                                  {"floor_lamp", "400"},
+                                                                  {"desk_lamp", "3000K"},
+                                                                  {"sconce_left", "#ffd9a0"},
+                                                                  {"picture_spot", "x2"}}));
 }
 
 TEST_CASE("an OBJ file is copied with a library of its own") {
@@ -185,11 +169,9 @@ TEST_CASE("an OBJ file is copied with a library of its own") {
   const auto file = folder.write(
       "room.obj", "mtllib materials.mtl\n" + unit_square +
                       "o panel\nusemtl lamp\nf 1 2 3 4\no floor\nusemtl wall\nf 1 2 3\n");
-  LightMix mix = LightMix::of(load_scene(file), 683);
-  change_lights(mix, {{"panel", "x0.3"}, {"panel", "#ff8000"}});
-  const auto copy = writing::write_edited_scene(file, {}, mix, "warm");
-  CHECK(copy.file.filename() == "room.warm.obj");
-  check_reads_back(copy.file, mix);
+  const ChangedCopy copy(file, {{"panel", "x0.3"}, {"panel", "#ff8000"}}, "warm");
+  CHECK(copy.written.file.filename() == "room.warm.obj");
+  check_reads_back(copy);
   CHECK(bytes_of(folder.path / "materials.mtl") == lamp_and_wall);
 }
 
@@ -198,9 +180,7 @@ TEST_CASE("lamps of one MTL material that are set differently are told and keep 
   folder.write("materials.mtl", lamp_and_wall);
   const auto file = folder.write("room.obj", "mtllib materials.mtl\n" + unit_square +
                                                  "usemtl lamp\no one\nf 1 2 3\no two\nf 1 3 4\n");
-  LightMix mix = LightMix::of(load_scene(file), 683);
-  change_lights(mix, {{"one", "x2"}});
-  const auto copy = writing::write_edited_scene(file, {}, mix, "a");
+  const auto [mix, copy] = ChangedCopy(file, {{"one", "x2"}});
   REQUIRE(copy.left_out.size() == 1);
   CHECK_THAT(copy.left_out[0], Contains("one") && Contains("two") && Contains("lamp"));
   CHECK(LightMix::of(load_scene(copy.file), 683).lights[0].power == Approx(mix.lights[1].power));
@@ -211,9 +191,7 @@ TEST_CASE("lights of options are told, and no file is written over another") {
   const auto file = write_scene(folder, square_document());
   SceneLoadOptions options;
   options.sky = Sky{SkyKind::uniform, 1000};
-  LightMix mix = LightMix::of(load_scene(file, options), 683);
-  change_lights(mix, {{"sky", "x0.5"}, {"panel", "x2"}});
-  const auto copy = writing::write_edited_scene(file, options, mix, "a");
+  const auto [mix, copy] = ChangedCopy(file, {{"sky", "x0.5"}, {"panel", "x2"}}, "a", options);
   REQUIRE(copy.left_out.size() == 1);
   CHECK_THAT(copy.left_out[0], Contains("sky") && Contains("option"));
   CHECK_THROWS_WITH(writing::write_edited_scene(file, options, mix, "a"),

@@ -7,12 +7,14 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tuple>
 
 #include "scene_files.hpp"
 
 namespace photile::test {
 namespace {
 
+using Catch::Contains;
 using nlohmann::json;
 
 constexpr std::uint32_t sheet_cells = 12;
@@ -65,10 +67,8 @@ json document_of(const Sheet& sheet) {
   return document;
 }
 
-Scene load(const json& document, const std::string& buffer, const char* name = "scene.gltf") {
-  const SceneFolderOnDisk folder;
-  folder.write("sheet.bin", buffer);
-  return load_scene(folder.write(name, document.dump()), {});
+Scene load(const json& document, const std::string& buffer) {
+  return load_gltf(document, {}, {{"sheet.bin", buffer}});
 }
 
 Scene as_it_is(const Sheet& sheet) {
@@ -129,10 +129,9 @@ PackedSheet packed(const Sheet& sheet) {
            packed_vertices(sheet.normals.data(), sheet.points(), 12), packed_triangles(sheet)}};
 }
 
-double area_of(const Scene& scene) {
-  double area = 0;
-  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) area += triangle_area(scene, t);
-  return area;
+/// What is said of a scene that is refused.
+std::string refusal(const json& document, const std::string& buffer) {
+  return input_error_of([&] { load(document, buffer); });
 }
 
 TEST_CASE("what meshopt packed without a filter is the mesh bit by bit") {
@@ -160,32 +159,26 @@ TEST_CASE("positions that meshopt packed by exponents are right to their bits") 
   from.packing(0)["filter"] = "EXPONENTIAL";
   const Scene scene = load(from.document, from.buffer);
   CHECK(scene.triangle_count() == 2 * sheet_cells * sheet_cells);
-  CHECK(area_of(scene) == Approx(area_of(as_it_is(sheet))).epsilon(1e-4));
+  CHECK(total_area(scene) == Approx(total_area(as_it_is(sheet))).epsilon(1e-4));
 }
 
 TEST_CASE("damaged or boundless meshopt data is refused by the view's name") {
   const Sheet sheet;
-  const auto refusal = [](const PackedSheet& from) {
-    return input_error_of([&] { load(from.document, from.buffer); });
-  };
-  PackedSheet cut = packed(sheet);
-  cut.packing(2)["byteLength"] = 20;
-  CHECK_THAT(refusal(cut), Catch::Contains("bufferViews[2]"));
-  PackedSheet beyond = packed(sheet);
-  beyond.packing(0)["byteOffset"] = beyond.buffer.size();
-  CHECK_THAT(refusal(beyond), Catch::Contains("bufferViews[0] lies outside its buffer"));
-  PackedSheet bomb = packed(sheet);
-  bomb.packing(1)["count"] = 1'000'000'000;
-  CHECK_THAT(refusal(bomb), Catch::Contains("bufferViews[1]: 1000000000 elements"));
-  PackedSheet odd = packed(sheet);
-  odd.packing(0)["byteStride"] = 7;
-  CHECK_THAT(refusal(odd), Catch::Contains("7 bytes"));
-  PackedSheet unknown = packed(sheet);
-  unknown.packing(0)["mode"] = "SPHERES";
-  CHECK_THAT(refusal(unknown), Catch::Contains("SPHERES"));
+  const std::size_t whole = packed(sheet).buffer.size();
+  for (const auto& [view, member, value, told] :
+       std::vector<std::tuple<std::size_t, const char*, json, const char*>>{
+           {2, "byteLength", 20, "bufferViews[2]"},
+           {0, "byteOffset", whole, "bufferViews[0] lies outside its buffer"},
+           {1, "count", 1'000'000'000, "bufferViews[1]: 1000000000 elements"},
+           {0, "byteStride", 7, "7 bytes"},
+           {0, "mode", "SPHERES", "SPHERES"}}) {
+    PackedSheet from = packed(sheet);
+    from.packing(view)[member] = value;
+    CHECK_THAT(refusal(from.document, from.buffer), Contains(told));
+  }
   PackedSheet changed = packed(sheet);
   changed.buffer[0] = 'x';
-  CHECK_THAT(refusal(changed), Catch::Contains("is damaged"));
+  CHECK_THAT(refusal(changed.document, changed.buffer), Contains("is damaged"));
 }
 
 TEST_CASE("packed bytes that many views name are unpacked once, and unused ones never") {
@@ -264,7 +257,7 @@ TEST_CASE("what Draco packed is the mesh to the bits that it kept") {
   CHECK(load(document, buffer).vertices == scene.vertices);
   CHECK(scene.report.warnings.empty());
   REQUIRE(scene.triangle_count() == expected.triangle_count());
-  CHECK(area_of(scene) == Approx(area_of(expected)).epsilon(1e-4));
+  CHECK(total_area(scene) == Approx(total_area(expected)).epsilon(1e-4));
   CHECK(scene.corner_normal.size() == expected.corner_normal.size());
   for (const glm::vec3& vertex : scene.vertices) {
     const auto nearest =
@@ -291,32 +284,29 @@ TEST_CASE("a mesh that is there without compression, too, needs no Draco") {
 TEST_CASE("damaged Draco data is refused by the mesh's name") {
   const Sheet sheet;
   const auto [document, buffer] = draco_sheet(sheet, 12);
-  const auto refusal = [](const json& changed, const std::string& bytes) {
-    return input_error_of([&] { load(changed, bytes); });
-  };
   json cut = document;
   cut["bufferViews"][0]["byteLength"] = buffer.size() / 2;
-  CHECK_THAT(refusal(cut, buffer), Catch::Contains("mesh 'square': its Draco data is damaged"));
+  CHECK_THAT(refusal(cut, buffer), Contains("mesh 'square': its Draco data is damaged"));
   std::string spoilt = buffer;
   spoilt[0] = 'x';
-  CHECK_THAT(refusal(document, spoilt), Catch::Contains("is damaged"));
+  CHECK_THAT(refusal(document, spoilt), Contains("is damaged"));
   json other = document;
   other["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["attributes"]
        ["POSITION"] = 77;
-  CHECK_THAT(refusal(other, buffer), Catch::Contains("an attribute that the file names"));
+  CHECK_THAT(refusal(other, buffer), Contains("an attribute that the file names"));
   json fewer = document;
   fewer["accessors"][0]["count"] = 5;
-  CHECK_THAT(refusal(fewer, buffer), Catch::Contains("the accessor 5"));
+  CHECK_THAT(refusal(fewer, buffer), Contains("the accessor 5"));
   // What follows the header and the kind of traversal are the numbers of vertices and of faces.
   const std::size_t counts = 12;
   REQUIRE(buffer[8] == 1);  // edgebreaker
   std::string bomb = buffer;
   bomb.replace(counts, 8, "\x80\x80\x80\x40\xFF\xFF\xFF\x40");
-  CHECK_THAT(refusal(document, bomb), Catch::Contains("larger than"));
+  CHECK_THAT(refusal(document, bomb), Contains("larger than"));
   json absent = document;
   absent["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["bufferView"] =
       9;
-  CHECK_THAT(refusal(absent, buffer), Catch::Contains("has no buffer view"));
+  CHECK_THAT(refusal(absent, buffer), Contains("has no buffer view"));
 }
 
 }  // namespace

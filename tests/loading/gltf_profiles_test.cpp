@@ -16,24 +16,24 @@ using std::numbers::pi;
 const std::string even_lamp = IesText().str();
 
 /// A dark square and a node called lamp with the given members.
-nlohmann::json document_with(const nlohmann::json& node) {
-  nlohmann::json lamp = {{"name", "lamp"}, {"translation", {0, 0, 2}}};
+json document_with(const json& node = json::object()) {
+  json lamp = {{"name", "lamp"}, {"translation", {0, 0, 2}}};
   lamp.update(node);
   return dark_square_and(lamp);
 }
 
-nlohmann::json with_profiles(nlohmann::json document, const nlohmann::json& lights) {
+json with_profiles(json document, const json& lights) {
   document["extensionsUsed"] = {"EXT_lights_ies"};
   document["extensions"]["EXT_lights_ies"]["lights"] = lights;
   return document;
 }
 
-nlohmann::json node_of_profile(nlohmann::json members = nlohmann::json::object()) {
+json node_of_profile(json members = json::object()) {
   members["light"] = 0;
   return {{"extensions", {{"EXT_lights_ies", members}}}};
 }
 
-nlohmann::json point_light_node(nlohmann::json& document) {
+json point_light_node(json& document) {
   document["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"},
                                                               {"intensity", 7},
                                                               {"color", {1, 0.5, 0}},
@@ -46,7 +46,7 @@ struct Folder : SceneFolderOnDisk {
     write("square.bin", square_buffer());
     write("lamp.ies", even_lamp);
   }
-  Scene load(const nlohmann::json& document, const SceneLoadOptions& options = {}) const {
+  Scene load(const json& document, const SceneLoadOptions& options = {}) const {
     return load_scene(write("scene.gltf", document.dump()), options);
   }
 };
@@ -84,7 +84,7 @@ TEST_CASE("a node of EXT_lights_ies is a point light with the file's flux") {
 }
 
 TEST_CASE("profiles may lie in data URIs and buffer views") {
-  const nlohmann::json document = document_with(node_of_profile());
+  const json document = document_with(node_of_profile());
   for (const char* type : {"application/x-ies-lm-63", "application/octet-stream"}) {
     const std::string uri = std::string("data:") + type + ";base64," + base64(even_lamp);
     CHECK(Folder().load(with_profiles(document, {{{"uri", uri}}})).lights.at(0).power ==
@@ -92,7 +92,7 @@ TEST_CASE("profiles may lie in data URIs and buffer views") {
   }
   const Folder folder;
   folder.write("buffer.bin", even_lamp);
-  nlohmann::json viewed =
+  json viewed =
       with_profiles(document, {{{"bufferView", 4}, {"mimeType", "application/x-ies-lm-63"}}});
   viewed["buffers"].push_back({{"uri", "buffer.bin"}, {"byteLength", even_lamp.size()}});
   viewed["bufferViews"].push_back({{"buffer", 1}, {"byteLength", even_lamp.size()}});
@@ -100,8 +100,7 @@ TEST_CASE("profiles may lie in data URIs and buffer views") {
 }
 
 TEST_CASE("multiplier and colour change the flux; nodes share a file that is read once") {
-  nlohmann::json document =
-      document_with(node_of_profile({{"multiplier", 0.5}, {"color", {1, 0, 0}}}));
+  json document = document_with(node_of_profile({{"multiplier", 0.5}, {"color", {1, 0, 0}}}));
   document["nodes"].push_back(document["nodes"][1]);
   document["scenes"][0]["nodes"] = {0, 1, 2};
   const Scene scene = Folder().load(with_profiles(document, {{{"uri", "lamp.ies"}}}));
@@ -114,7 +113,7 @@ TEST_CASE("multiplier and colour change the flux; nodes share a file that is rea
 TEST_CASE("a lamp turns with its node") {
   // A quarter turn about x takes -z to -y... +y to +z.
   const double half = std::sqrt(0.5);
-  nlohmann::json node = node_of_profile();
+  json node = node_of_profile();
   node["rotation"] = {-half, 0, 0, half};
   node["scale"] = {3, 2, 1};
   const Scene scene = Folder().load(with_profiles(document_with(node), {{{"uri", "lamp.ies"}}}));
@@ -123,7 +122,7 @@ TEST_CASE("a lamp turns with its node") {
 }
 
 TEST_CASE("photile_ies gives a light its file, with the light's colour") {
-  nlohmann::json document = document_with(nlohmann::json::object());
+  json document = document_with();
   document["nodes"][1]["extensions"] = point_light_node(document);
   document["nodes"][1]["extras"]["photile_ies"] = "lamp.ies";
   const Scene scene = Folder().load(document);
@@ -143,7 +142,7 @@ TEST_CASE("photile_ies makes a light of an empty node") {
 }
 
 TEST_CASE("photile_lumens sets the flux of any lamp without size, but no sun's") {
-  nlohmann::json document = document_with(nlohmann::json::object());
+  json document = document_with();
   document["nodes"][1]["extensions"] = point_light_node(document);
   document["nodes"][1]["extras"]["photile_lumens"] = 800;
   CHECK(Folder().load(document).lights.at(0).power == 800);
@@ -153,20 +152,17 @@ TEST_CASE("photile_lumens sets the flux of any lamp without size, but no sun's")
 
 TEST_CASE("the option --ies gives a point or spot light a file") {
   const Folder folder;
-  nlohmann::json document = document_with(nlohmann::json::object());
+  json document = document_with();
   document["nodes"][1]["extensions"] = point_light_node(document);
-  const auto option = [&](const std::string& text) {
-    SceneLoadOptions options;
-    options.profiles.push_back(LightProfile::parse(text));
-    return options;
-  };
   folder.write("lamp.ldt", EulumdatText().str());
-  const std::string path = folder.path.string();
-  const Scene scene = folder.load(document, option("lamp=" + path + "/lamp.ies"));
-  CHECK(scene.lights.at(0).kind == LightKind::point);
-  CHECK(scene.lights.at(0).power == Approx(400 * pi));
-  CHECK(folder.load(document, option("lamp=" + path + "/lamp.ldt")).lights.at(0).power ==
-        Approx(50 * 2 * 4 * pi));
+  for (const auto& [file, power] :
+       {std::pair{"lamp.ies", 400 * pi}, {"lamp.ldt", 50 * 2 * 4 * pi}}) {
+    SceneLoadOptions options;
+    options.profiles.push_back(LightProfile::parse("lamp=" + (folder.path / file).string()));
+    const Scene scene = folder.load(document, options);
+    CHECK(scene.lights.at(0).kind == LightKind::point);
+    CHECK(scene.lights.at(0).power == Approx(power));
+  }
 }
 
 }  // namespace photile::test

@@ -1,7 +1,5 @@
 // EXT_lights_image_based: cube maps in PNGs, plain and RGBD, that surround a glTF scene.
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <iterator>
 #include <numbers>
 
 #include "file_bytes.hpp"

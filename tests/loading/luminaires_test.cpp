@@ -1,6 +1,4 @@
 // Lamps that a user places: where they are, and what their openings send.
-#include <catch2/catch.hpp>
-#include <cmath>
 #include <numbers>
 
 #include "message_of.hpp"
@@ -43,13 +41,11 @@ Scene scene_with(const SceneFolderOnDisk& folder, const std::string& luminaires,
 
 /// lux for each lumen, of 16 seeds.
 std::vector<double> lux_at(const Scene& scene, const Sensor& sensor) {
-  std::vector<double> values;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+  return of_seeds([&](std::uint64_t seed) {
     const auto layers =
         gather_by_paths(scene, std::span(&sensor, 1), {.rays = 4096}, seed).layers.dense();
-    values.push_back(double{layers.layers.at(0).illuminance.at(0)});
-  }
-  return values;
+    return double{layers.layers.at(0).illuminance.at(0)};
+  });
 }
 
 constexpr const char* one = R"({"file": "lamp.ies", "position": [0.5, 0.5, 2], "aim": [0, 0, -1],
@@ -86,17 +82,15 @@ TEST_CASE("a placed lamp has the flux of its file, and its place, aim and size")
   CHECK(lamp.name == "panel");
   CHECK(lamp.power == Approx(100 * pi).epsilon(1e-3));
   CHECK(!lamp.two_sided);
-  double area = 0;
   for (const std::uint32_t triangle : lamp.triangles) {
-    area += triangle_area(scene, triangle);
-    CHECK(face_normal(scene, oriented(triangle, scene.front_side[triangle])).z == Approx(-1));
+    CHECK(front_of(scene, triangle).z == Approx(-1));
     for (const glm::vec3& corner : scene.corners(triangle)) {
       const glm::dvec3 place = glm::dvec3(corner) + scene.origin;
       CHECK(place.z == Approx(2));
       CHECK(std::abs(std::max(std::abs(place.x - 0.5), std::abs(place.y - 0.5)) - 0.6) < 1e-5);
     }
   }
-  CHECK(area == Approx(1.2 * 0.6));
+  CHECK(area_of(scene, lamp) == Approx(1.2 * 0.6));
 }
 
 TEST_CASE("an array is spaced around its middle and shares a layer") {
@@ -151,33 +145,18 @@ TEST_CASE("an opening of cosine intensities is a Lambertian rectangle") {
   CHECK_VERDICT(mean_is(lux_at(scene, {at - scene.origin, normal}), truth, 0.03 * truth));
 }
 
-TEST_CASE("without a size the opening is the file's") {
-  const SceneFolderOnDisk folder;
-  const Scene scene =
-      scene_with(folder, R"({"file": "lamp.ies", "position": [0.5, 0.5, 2], "aim": [0, 0, -1]})");
-  double area = 0;
-  for (const std::uint32_t triangle : scene.lights[0].triangles) {
-    const auto corners = scene.corners(triangle);
-    area +=
-        0.5 * glm::length(glm::dvec3(glm::cross(corners[1] - corners[0], corners[2] - corners[0])));
-  }
-  CHECK(area == Approx(0.1 * 0.1));  // IesText's
-}
-
-TEST_CASE("a round opening without a size is a square of its area") {
+TEST_CASE("without a size the opening is the file's, a square of its area where that is round") {
   const SceneFolderOnDisk folder;
   IesText text;
   text.vertical = angles(0, 180, 180);
   text.candela = lambertian;
-  text.opening = GENERATE("-0.4 -0.4 0", "-0.4 0 0");
-  folder.write("round.ies", text.str());
+  const auto [opening, area] = GENERATE(table<const char*, double>(
+      {{"0.1 0.1 0", 0.01}, {"-0.4 -0.4 0", pi * 0.04}, {"-0.4 0 0", pi * 0.04}}));
+  text.opening = opening;
+  folder.write("other.ies", text.str());
   const Scene scene =
-      scene_with(folder, R"({"file": "round.ies", "position": [0.5, 0.5, 2], "aim": [0, 0, -1]})");
-  double area = 0;
-  for (const std::uint32_t triangle : scene.lights[0].triangles) {
-    area += triangle_area(scene, triangle);
-  }
-  CHECK(area == Approx(pi * 0.2 * 0.2));
+      scene_with(folder, R"({"file": "other.ies", "position": [0.5, 0.5, 2], "aim": [0, 0, -1]})");
+  CHECK(area_of(scene, scene.lights[0]) == Approx(area));
 }
 
 TEST_CASE("a small opening is the point of its intensities") {
@@ -224,8 +203,7 @@ TEST_CASE("photometric files outside the list's folder are read where that is al
         "../" + std::filesystem::path(lamp).parent_path().filename().string() + "/lamp.ies"}) {
     const std::string list =
         R"([{"file": ")" + name + R"(", "position": [0.5, 0.5, 2], "size": [1, 1]}])";
-    CHECK_THAT(message_of<InputError>([&] { scene_with(folder, list); }),
-               Catch::Contains("outside"));
+    CHECK_THAT(message_of<InputError>([&] { scene_with(folder, list); }), Contains("outside"));
     CHECK(scene_with(folder, list, lambertian, true).lights.size() == 1);
   }
 }

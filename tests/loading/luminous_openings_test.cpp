@@ -2,11 +2,8 @@
 // and the editions of LM-63 that describe them.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 #include <glm/glm.hpp>
 #include <numbers>
-#include <string>
-#include <vector>
 
 #include "files/scene_files.hpp"
 #include "photometric_texts.hpp"

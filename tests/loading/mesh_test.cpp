@@ -10,7 +10,6 @@ namespace {
 
 using scene::Corner;
 using scene::MeshBuilder;
-using test::load_obj;
 
 /// A bumpy grid of triangles with texture coordinates; every third is wound the other way round
 /// when `flipped`.

@@ -1,5 +1,4 @@
 // Files as users meet them: incomplete, redundant, compressed, or from exporters with habits.
-#include <catch2/catch.hpp>
 #include <numbers>
 
 #include "scene_files.hpp"
@@ -10,7 +9,6 @@ namespace {
 
 using nlohmann::json;
 using std::numbers::pi;
-using test::load_obj;
 
 const std::string three_materials =
     "newmtl lamp\nKe 2 2 2\nnewmtl wall\nKd 0.5 0.5 0.5\nnewmtl other\nKd 0.1 0.2 0.3\n";
@@ -101,7 +99,7 @@ TEST_CASE("absent, zero and inverted normals leave the surface as its corners sa
   REQUIRE(inverted.corner_normal.size() == 1);
   for (const glm::vec3& normal : inverted.corner_normal[0]) CHECK(normal == glm::vec3(0, 0, 1));
   for (const Scene* scene : {&absent, &zero, &inverted}) {
-    CHECK(face_normal(*scene, oriented(0, scene->front_side[0])).z == Approx(1.0));
+    CHECK(front_of(*scene, 0).z == Approx(1.0));
   }
   json document = square_document();
   document["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
@@ -159,23 +157,6 @@ TEST_CASE("all perspective cameras of a glTF scene are there, in the order of it
   CHECK(scene.cameras[0].name == "door");
   CHECK(scene.cameras[0].vertical_field_of_view == Approx(0.9));
   CHECK(scene.cameras[1].name == "window");
-}
-
-TEST_CASE("indices may be sparse, too") {
-  json document = square_document();
-  document["buffers"].push_back({{"uri", "sparse.bin"}, {"byteLength", 6}});
-  document["bufferViews"].push_back({{"buffer", 1}, {"byteOffset", 0}, {"byteLength", 2}});
-  document["bufferViews"].push_back({{"buffer", 1}, {"byteOffset", 4}, {"byteLength", 2}});
-  document["accessors"][2]["sparse"] = {{"count", 1},
-                                        {"indices", {{"bufferView", 4}, {"componentType", 5121}}},
-                                        {"values", {{"bufferView", 5}}}};
-  const SceneFolderOnDisk folder;
-  folder.write("square.bin", square_buffer());
-  // Corner 4 of 0 1 2 0 2 3 becomes 1: the square of area 1 becomes two halves that overlap.
-  folder.write("sparse.bin", bytes_of<std::uint16_t>({4, 0, 1}));
-  const Scene scene = load_scene(folder.write("scene.gltf", document.dump()));
-  REQUIRE(scene.triangle_count() == 2);
-  for (const glm::vec3& corner : scene.corners(1)) CHECK(corner.x + corner.y < 1.5f);
 }
 
 }  // namespace photile::test

@@ -1,10 +1,8 @@
 // IES LM-63 and EULUMDAT files.
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "files/scene_files.hpp"
 #include "message_of.hpp"
@@ -189,52 +187,27 @@ TEST_CASE("keywords and input watts describe the luminaire", "[ies]") {
 
 TEST_CASE("colours of lamps are found in the words for them", "[ies]") {
   using photometry::kelvin_in, photometry::highest_kelvin_in, photometry::rendering_in;
-  for (const auto& [text, lowest, highest] :
-       std::vector<std::tuple<const char*, int, int>>{{"4000", 4000, 0},
-                                                      {"3000K", 3000, 0},
-                                                      {"warm white / 2700 K", 2700, 0},
-                                                      {"ww/3000", 3000, 0},
-                                                      {"4000 K/840", 4000, 0},
-                                                      {"840", 4000, 0},
-                                                      {"tw 2700-6500", 2700, 6500},
-                                                      {"927-965", 2700, 6500},
-                                                      {"warm", 0, 0},
-                                                      {"12", 0, 0},
-                                                      {"999999", 0, 0}}) {
-    CAPTURE(text);
-    CHECK(kelvin_in(text) == lowest);
-    CHECK(highest_kelvin_in(text) == highest);
+  using Kelvin = std::tuple<int, int, std::vector<const char*>>;
+  for (const auto& [lowest, highest, texts] :
+       {Kelvin{4000, 0, {"4000", "4000 K/840", "840"}}, Kelvin{3000, 0, {"3000K", "ww/3000"}},
+        Kelvin{2700, 0, {"warm white / 2700 K"}}, Kelvin{2700, 6500, {"tw 2700-6500", "927-965"}},
+        Kelvin{0, 0, {"warm", "12", "999999"}}}) {
+    for (const char* text : texts) {
+      CAPTURE(text);
+      CHECK(kelvin_in(text) == lowest);
+      CHECK(highest_kelvin_in(text) == highest);
+    }
   }
-  for (const auto& [text, ra] : std::vector<std::pair<const char*, int>>{{"80", 80},
-                                                                         {"85", 85},
-                                                                         {"Ra 90", 90},
-                                                                         {"Ra > 90", 90},
-                                                                         {">80", 80},
-                                                                         {"80-89", 80},
-                                                                         {"90+", 90},
-                                                                         {"1B/86", 86},
-                                                                         {"86 (1B)", 86},
-                                                                         {"1B", 80},
-                                                                         {"1b", 80},
-                                                                         {"1 B", 80},
-                                                                         {"1A", 90},
-                                                                         {"2A", 70},
-                                                                         {"2B", 60},
-                                                                         {"1", 80},
-                                                                         {"3", 40},
-                                                                         {"4", 20},
-                                                                         {"930", 90},
-                                                                         {"CRI 80", 80},
-                                                                         {"100", 100},
-                                                                         {"1A/90-100", 90},
-                                                                         {"R9 50, Ra 92", 92},
-                                                                         {"83,5", 83},
-                                                                         {"5", 0},
-                                                                         {"", 0},
-                                                                         {"-", 0},
-                                                                         {"n/a", 0}}) {
-    CAPTURE(text);
-    CHECK(rendering_in(text) == ra);
+  using Ra = std::pair<int, std::vector<const char*>>;
+  for (const auto& [ra, texts] :
+       {Ra{100, {"100"}}, Ra{92, {"R9 50, Ra 92"}}, Ra{86, {"1B/86", "86 (1B)"}}, Ra{85, {"85"}},
+        Ra{90, {"Ra 90", "Ra > 90", "90+", "1A", "930", "1A/90-100"}}, Ra{83, {"83,5"}},
+        Ra{80, {"80", ">80", "80-89", "1B", "1b", "1 B", "1", "CRI 80"}}, Ra{70, {"2A"}},
+        Ra{60, {"2B"}}, Ra{40, {"3"}}, Ra{20, {"4"}}, Ra{0, {"5", "", "-", "n/a"}}}) {
+    for (const char* text : texts) {
+      CAPTURE(text);
+      CHECK(rendering_in(text) == ra);
+    }
   }
 }
 
@@ -257,12 +230,7 @@ IntensityDistribution read_eulumdat(const std::string& text) {
 }
 
 std::string eulumdat_refusal(const std::string& text) {
-  try {
-    read_eulumdat(text);
-  } catch (const files::ResourceError& error) {
-    return error.what();
-  }
-  return "";
+  return message_of<ResourceError>([&] { read_eulumdat(text); });
 }
 
 glm::dvec3 level_towards(double c) { return {std::cos(c * pi / 180), std::sin(c * pi / 180), 0.0}; }

@@ -1,9 +1,6 @@
 // Cameras, axes and coordinates of scene files.
-#include <fmt/format.h>
 
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <functional>
 
 #include "garbage.hpp"
 #include "measuring/working_plane.hpp"
@@ -45,7 +42,7 @@ TEST_CASE("rays of a camera meet the corners of its film where the field of view
 }
 
 TEST_CASE("a glTF camera looks along -z of its node, and scale does not change it") {
-  nlohmann::json document = square_document();
+  json document = square_document();
   document["cameras"] = {{{"type", "perspective"},
                           {"perspective", {{"yfov", 0.7}, {"aspectRatio", 1.5}, {"znear", 0.1}}}}};
   // A quarter turn about y: -z becomes -x.
@@ -175,7 +172,7 @@ TEST_CASE("placed lamps have their place and aim in the file's world") {
 TEST_CASE("the root of a glTF file is turned, with all that hangs on it") {
   const Scene scene = load_gltf(square_document(), up("z"));  // it faces +z in the file
   for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
-    CHECK(face_normal(scene, oriented(t, scene.front_side[t])).y == Approx(1));
+    CHECK(front_of(scene, t).y == Approx(1));
   }
 }
 
@@ -231,7 +228,7 @@ TEST_CASE("a scene of a doubtful size is told with the units that make a room of
 }
 
 TEST_CASE("a glTF file in centimetres has its triangles and cameras in metres") {
-  nlohmann::json document = square_document();
+  json document = square_document();
   document["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}}};
   document["nodes"].push_back({{"name", "eye"}, {"camera", 0}, {"translation", {50, 60, 300}}});
   document["scenes"][0]["nodes"] = {0, 1};
@@ -366,7 +363,7 @@ TEST_CASE("origin: corners that are no places do not move it, and are dropped be
 TEST_CASE("garbage OBJ files are refused in a line, or give a scene of sound triangles") {
   int loaded = 0;
   for (unsigned seed = 0; seed < 1000; ++seed) {
-    const std::string text = test::garbage_obj(seed);
+    const std::string text = garbage_obj(seed);
     CAPTURE(seed, text);
     try {
       const Scene scene = load_obj(text, lamp_and_wall);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -90,10 +91,42 @@ inline std::string square_buffer() {
          bytes_of<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
 }
 
-inline Scene load_gltf(const nlohmann::json& document, const SceneLoadOptions& options = {}) {
+/// Loads a document beside square.bin and other files, by their names.
+inline Scene load_gltf(const nlohmann::json& document, const SceneLoadOptions& options = {},
+                       const std::map<std::string, std::string>& files = {}) {
   const SceneFolderOnDisk folder;
   folder.write("square.bin", square_buffer());
+  for (const auto& [name, bytes] : files) folder.write(name, bytes);
   return load_scene(folder.write("scene.gltf", document.dump()), options);
+}
+
+/// The document as a GLB, with square_buffer() behind it.
+inline std::string glb_of(nlohmann::json document) {
+  document["buffers"][0].erase("uri");
+  std::string text = document.dump();
+  const std::string buffer = square_buffer();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto word = [](std::size_t value) {
+    return bytes_of<std::uint32_t>({static_cast<std::uint32_t>(value)});
+  };
+  return "glTF" + word(2) + word(28 + text.size() + buffer.size()) + word(text.size()) + "JSON" +
+         text + word(buffer.size()) + std::string("BIN\0", 4) + buffer;
+}
+
+inline double total_area(const Scene& scene) {
+  double area = 0;
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) area += triangle_area(scene, t);
+  return area;
+}
+
+inline double area_of(const Scene& scene, const Light& light) {
+  double area = 0;
+  for (const std::uint32_t triangle : light.triangles) area += triangle_area(scene, triangle);
+  return area;
+}
+
+inline glm::dvec3 front_of(const Scene& scene, std::uint32_t triangle) {
+  return face_normal(scene, oriented(triangle, scene.front_side[triangle]));
 }
 
 /// Whether some warning holds all the words.

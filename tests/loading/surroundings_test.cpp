@@ -1,25 +1,23 @@
 // What surrounds a scene.
 #include "loading/surroundings.hpp"
 
-#include <OpenImageIO/imageio.h>
-
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <functional>
 #include <glm/glm.hpp>
 #include <limits>
 #include <numbers>
 #include <random>
 
-#include "photile/image.hpp"
+#include "flat_picture.hpp"
 #include "pictures/textures.hpp"
-#include "scene_files.hpp"
+#include "textured_square.hpp"
 #include "trace/distant_light.hpp"
 
 namespace photile::test {
 namespace {
 
+using Catch::Contains;
 using pictures::CubeMap;
 using std::numbers::pi;
 
@@ -51,17 +49,8 @@ EnvironmentMap numbered(double rotation = 0) {
   return {"numbered", 8, 4, texels, rotation};
 }
 
-std::string write_picture(const SceneFolderOnDisk& folder, const std::string& name, int width,
-                          int height, const std::vector<float>& pixels,
-                          OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT) {
-  const std::string file = (folder.path / name).string();
-  const auto output = OIIO::ImageOutput::create(file);
-  REQUIRE(output);
-  REQUIRE(output->open(file, OIIO::ImageSpec(width, height, 3, type)));
-  REQUIRE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()));
-  REQUIRE(output->close());
-  return file;
-}
+const std::string dark_square = unit_square + "usemtl wall\nf 1 2 3 4\n",
+                  dark_wall = "newmtl wall\nKd 0.5 0.5 0.5\n";
 
 Scene load_under(const SceneLoadOptions& options) {
   nlohmann::json document = square_document();
@@ -77,17 +66,9 @@ TEST_CASE("an environment has the radiance that its file says, at each place and
     return folder.write("e.hdr", text);
   };
   const auto lux = [&](const std::filesystem::path& file, bool watts = false) {
-    folder.write("square.bin", square_buffer());
-    folder.write("materials.mtl", "newmtl wall\nKd 0.5 0.5 0.5\n");
     SceneLoadOptions options;
     options.environment.file = file;
-    nlohmann::json document = square_document();
-    document["materials"][0]["emissiveFactor"] = {0, 0, 0};
-    const Scene scene =
-        load_scene(watts ? folder.write("s.obj", "mtllib materials.mtl\n" + unit_square +
-                                                     "usemtl wall\nf 1 2 3 4\n")
-                         : folder.write("s.gltf", document.dump()),
-                   options);
+    const Scene scene = watts ? load_obj(dark_square, dark_wall, options) : load_under(options);
     return illuminance(scene.environments.at(0), {0, 1, 0});
   };
   CHECK(lux(hdr("")) == Approx(100 * pi).epsilon(1e-2));
@@ -98,12 +79,8 @@ TEST_CASE("an environment has the radiance that its file says, at each place and
   // XYZ is in cd/m2 (ra_xyze divides by its 179 lm/W), RGB in what the scene has.
   CHECK(lux(hdr(""), true) == Approx(all));
   CHECK(lux(hdr("", "xyze"), true) == Approx(all / SceneLoadOptions().lumen_per_watt));
-  CHECK_THROWS_WITH(lux(hdr("VIEW= -vth -vp 0 0 0\n")),
-                    Catch::Contains("e.hdr") && Catch::Contains("-vth"));
-  Image picture;
-  picture.width = 4;
-  picture.height = 2;
-  for (const char* channel : {"R", "G", "B"}) picture.add(channel).assign(8, 0.5f);
+  CHECK_THROWS_WITH(lux(hdr("VIEW= -vth -vp 0 0 0\n")), Contains("e.hdr") && Contains("-vth"));
+  Image picture = flat_picture(4, 2, 0.5f);
   picture.numbers["whiteLuminance"] = 200;
   write_exr(folder.path / "e.exr", picture);
   CHECK(lux(folder.path / "e.exr") == Approx(all));
@@ -142,7 +119,8 @@ TEST_CASE("an even environment of L gives the flux 4 pi L times the disc", "[env
   const SceneFolderOnDisk folder;
   SceneLoadOptions options;
   for (const char* name : {"sky.exr", "sky.hdr"}) {
-    options.environment.file = write_picture(folder, name, 4, 2, std::vector<float>(24, 0.5f));
+    options.environment.file =
+        write_picture(folder.path / name, 4, 2, 3, std::vector<float>(24, 0.5f));
     options.environment.scale = 20;
     const Scene scene = load_under(options);
     REQUIRE(scene.lights.size() == 1);
@@ -159,19 +137,18 @@ TEST_CASE("a picture that is no environment is refused by name", "[environment]"
     options.environment.file = file;
     return input_error_of([&] { load_under(options); });
   };
-  CHECK_THAT(error_of(write_picture(folder, "low.png", 2, 2, std::vector<float>(12, 0.5f),
-                                    OIIO::TypeDesc::UINT8)),
-             Catch::Contains("low.png") && Catch::Contains("floating-point"));
-  CHECK_THAT(error_of(write_picture(folder, "black.exr", 2, 2, std::vector<float>(12, 0.0f))),
-             Catch::Contains("is black"));
+  CHECK_THAT(
+      error_of(write_picture(folder.path / "low.png", 2, 2, 3, std::vector<std::uint8_t>(12, 127))),
+      Contains("low.png") && Contains("floating-point"));
+  CHECK_THAT(error_of(write_picture(folder.path / "black.exr", 2, 2, 3, std::vector<float>(12, 0))),
+             Contains("is black"));
   for (const float bad :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -0.25f}) {
     std::vector<float> pixels(2 * 3 * 3, 1.0f);
     pixels[4] = pixels[16] = bad;  // texels (1, 0) and (2, 1)
-    CHECK_THAT(error_of(write_picture(folder, "bad.exr", 3, 2, pixels)),
-               Catch::Contains("bad.exr") &&
-                   Catch::Contains("2 of 6 texels are NaN, infinite or negative") &&
-                   Catch::Contains("column 1, row 0"));
+    CHECK_THAT(error_of(write_picture(folder.path / "bad.exr", 3, 2, 3, pixels)),
+               Contains("bad.exr") && Contains("2 of 6 texels are NaN, infinite or negative") &&
+                   Contains("column 1, row 0"));
   }
 }
 
@@ -261,7 +238,7 @@ TEST_CASE("a sky or a sun lights ground that reflects a fifth, unless another is
   CHECK(ground_under(options) == Approx(0.2 * 20'000 * 0.5 / pi));
   options.ground = 0;
   CHECK(ground_under(options) == 0);
-  CHECK_THAT(loading::sky_facts(options).front().second, Catch::Contains("reflectance 0 below"));
+  CHECK_THAT(loading::sky_facts(options).front().second, Contains("reflectance 0 below"));
   // At night nothing lights it, which is no error unless another ground was asked for.
   options.ground = 0.2;
   options.sun = Sun{0, -30, 20'000};
@@ -291,8 +268,7 @@ TEST_CASE("lux become watts in an OBJ scene, by the luminous efficacy") {
   options.sun = Sun{0, 90, 683, 0};
   options.lumen_per_watt = 179;
   options.ground = 0;
-  const std::string wall = "newmtl wall\nKd 0.5 0.5 0.5\n";
-  const Scene scene = load_obj(unit_square + "usemtl wall\nf 1 2 3 4\n", wall, options);
+  const Scene scene = load_obj(dark_square, dark_wall, options);
   REQUIRE(scene.lights.size() == 1);
   CHECK(scene.lights[0].power == Approx(683.0 / 179 * pi * 0.5));
 }

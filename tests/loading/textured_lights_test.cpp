@@ -1,15 +1,11 @@
 // Lamps whose light is a picture: flux, photons, paths and eyes against integrals of the picture.
-#include <OpenImageIO/imageio.h>
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "path_irradiance.hpp"
-#include "photile/ray_scene.hpp"
 #include "scene/light_emission.hpp"
-#include "scene_files.hpp"
-#include "statistical_tests.hpp"
+#include "textured_square.hpp"
 #include "trace/light_emitter.hpp"
 
 namespace photile::test {
@@ -22,13 +18,8 @@ using std::numbers::pi;
 struct TexturedSquare : SceneFolderOnDisk {
   TexturedSquare() {
     write("square.bin", square_buffer());
-    const std::string file = (path / "glow.png").string();
-    const auto output = OIIO::ImageOutput::create(file);
-    REQUIRE(output);
-    const std::vector<std::uint8_t> pixels{255, 255, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0};
-    REQUIRE(output->open(file, OIIO::ImageSpec(4, 1, 3, OIIO::TypeDesc::UINT8)));
-    REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data()));
-    REQUIRE(output->close());
+    write_picture<std::uint8_t>(path / "glow.png", 4, 1, 3,
+                                {255, 255, 255, 255, 0, 0, 0, 0, 0, 0, 0, 0});
   }
   nlohmann::json document() const {
     nlohmann::json document = square_document();
@@ -135,7 +126,7 @@ TEST_CASE("cells of a textured light are chosen with the density that they state
     const double x = a.x + place.u * (b.x - a.x) + place.v * (c.x - a.x);
     ++counts[std::min<std::size_t>(static_cast<std::size_t>(8 * x), 7)];
   }
-  CHECK_VERDICT(test::counts_agree(counts, expected));
+  CHECK_VERDICT(counts_agree(counts, expected));
 }
 
 TEST_CASE("photons of a textured light carry its picture's light and colour", "[emission]") {
@@ -158,9 +149,9 @@ TEST_CASE("photons of a textured light carry its picture's light and colour", "[
   }
   double quarter = 0;
   for (int i = 0; i < 1000; ++i) quarter += picture((i + 0.5) / 4000) / 4000;
-  CHECK_VERDICT(test::mean_is(all, 1, 0.02));
-  CHECK_VERDICT(test::mean_is(left, quarter / ((1 + red) / 4), 0.03));
-  CHECK_VERDICT(test::mean_is(blue, 1 / (1 + red), 0.03));
+  CHECK_VERDICT(mean_is(all, 1, 0.02));
+  CHECK_VERDICT(mean_is(left, quarter / ((1 + red) / 4), 0.03));
+  CHECK_VERDICT(mean_is(blue, 1 / (1 + red), 0.03));
 }
 
 TEST_CASE("paths and eyes see the picture of a textured light", "[emission]") {
@@ -190,8 +181,7 @@ TEST_CASE("paths and eyes see the picture of a textured light", "[emission]") {
     }
   }
   truth /= scene.lights[0].power;
-  CHECK_VERDICT(test::mean_is(test::path_irradiances(scene, {{point, {0, 0, -1}}}, 4000), truth,
-                              0.03 * truth));
+  CHECK_VERDICT(mean_is(path_irradiances(scene, {{point, {0, 0, -1}}}, 4000), truth, 0.03 * truth));
 
   const RayScene rays(scene);
   const PrimaryHitParameters film{.width = 1, .height = 1, .samples_per_pixel = 1};

@@ -1,30 +1,35 @@
 // The square of scene_files.hpp under textures of one texel.
 #pragma once
 
-#include <OpenImageIO/imageio.h>
-
-#include <catch2/catch.hpp>
 #include <cstdint>
 #include <functional>
 
+#include "oiio_pictures.hpp"
 #include "photile/load_scene.hpp"
 #include "scene_files.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::test {
 
+/// A picture of bytes or floats whose colours are not multiplied by alpha, perhaps with a colour
+/// space (which a PNG keeps as its gAMA). Its file.
+template <typename T>
+std::filesystem::path write_picture(const std::filesystem::path& file, int width, int height,
+                                    int channels, const std::vector<T>& pixels,
+                                    const std::string& color_space = "") {
+  OIIO::ImageSpec spec(width, height, channels, OIIO::BaseTypeFromC<T>::value);
+  spec["oiio:UnassociatedAlpha"] = 1;
+  if (!color_space.empty()) spec["oiio:ColorSpace"] = color_space;
+  write_by_oiio(file, spec, pixels);
+  return file;
+}
+
 /// A picture of `side` x `side` equal texels of 1 to 4 bytes.
 inline void write_texel(const std::filesystem::path& file, const std::vector<std::uint8_t>& texel,
                         int side = 1) {
-  const auto output = OIIO::ImageOutput::create(file.string());
-  REQUIRE(output);
-  OIIO::ImageSpec spec(side, side, static_cast<int>(texel.size()), OIIO::TypeDesc::UINT8);
-  spec["oiio:UnassociatedAlpha"] = 1;
-  REQUIRE(output->open(file.string(), spec));
   std::vector<std::uint8_t> pixels;
   for (int i = 0; i < side * side; ++i) pixels.insert(pixels.end(), texel.begin(), texel.end());
-  REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data()));
-  REQUIRE(output->close());
+  write_picture(file, side, side, static_cast<int>(texel.size()), pixels);
 }
 
 /// The square with a lamp beside it, so that its material need not shine; its pictures are one

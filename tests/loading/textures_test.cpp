@@ -1,18 +1,14 @@
 // Textures: their pictures, their texels, and where they lie.
 #include "pictures/textures.hpp"
 
-#include <OpenImageIO/imageio.h>
-
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <fstream>
-#include <functional>
 #include <iterator>
 
 #include "files/scene_files.hpp"
 #include "photile/image.hpp"
-#include "scene_files.hpp"
 #include "srgb_oracle.hpp"
+#include "textured_square.hpp"
 
 namespace photile::test {
 namespace {
@@ -25,18 +21,6 @@ Texture four_texels() {
                  {{255, 0, 0, 255}, {0, 255, 0, 255}, {0, 0, 255, 255}, {255, 255, 255, 255}});
 }
 
-template <typename T>
-void write_picture(const std::filesystem::path& file, int width, int height, int channels,
-                   const std::vector<T>& pixels, OIIO::TypeDesc type) {
-  const auto output = OIIO::ImageOutput::create(file.string());
-  REQUIRE(output);
-  OIIO::ImageSpec spec(width, height, channels, type);
-  spec["oiio:UnassociatedAlpha"] = 1;
-  REQUIRE(output->open(file.string(), spec));
-  REQUIRE(output->write_image(type, pixels.data()));
-  REQUIRE(output->close());
-}
-
 std::vector<unsigned char> read_bytes(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
@@ -46,8 +30,7 @@ std::vector<unsigned char> read_bytes(const std::filesystem::path& file) {
 Scene textured(const std::function<void(json&)>& change, bool with_picture = true) {
   const SceneFolderOnDisk folder;
   if (with_picture) {
-    write_picture<std::uint8_t>(folder.path / "my picture.png", 2, 1, 3, {255, 0, 0, 0, 255, 0},
-                                OIIO::TypeDesc::UINT8);
+    write_picture<std::uint8_t>(folder.path / "my picture.png", 2, 1, 3, {255, 0, 0, 0, 255, 0});
   }
   json document = square_document();
   document["images"] = {{{"uri", "my%20picture.png"}}};
@@ -103,7 +86,7 @@ TEST_CASE("pictures of 1 to 4 channels decode to the colours written, alpha left
   for (int channels = 1; channels <= 4; ++channels) {
     std::vector<std::uint8_t> pixel{200, 100, 50, 0};
     pixel.resize(static_cast<std::size_t>(channels));
-    write_picture(file, 1, 1, channels, pixel, OIIO::TypeDesc::UINT8);
+    write_picture(file, 1, 1, channels, pixel);
     const glm::vec3 value =
         pictures::decode_texture("t.png", read_bytes(file)).sample({0.5f, 0.5f});
     CHECK(value.r == Approx(linear(200)));
@@ -114,40 +97,27 @@ TEST_CASE("pictures of 1 to 4 channels decode to the colours written, alpha left
 
 TEST_CASE("glTF takes colours as sRGB whatever a picture says, and MTL as the picture says") {
   const SceneFolderOnDisk folder;
-  const std::filesystem::path file = folder.path / "t.png";
-  OIIO::ImageSpec spec(1, 1, 3, OIIO::TypeDesc::UINT8);
-  spec["oiio:ColorSpace"] = "Linear";  // a gAMA of 1
-  const auto output = OIIO::ImageOutput::create(file.string());
-  REQUIRE(output->open(file.string(), spec));
-  const std::uint8_t texel[3] = {128, 128, 128};
-  REQUIRE(output->write_image(OIIO::TypeDesc::UINT8, texel));
-  REQUIRE(output->close());
+  const auto file = write_picture<std::uint8_t>(folder.path / "t.png", 1, 1, 3, {128, 128, 128},
+                                                "Linear");  // a gAMA of 1
   const auto value = [&](pictures::TextureContent content) {
     return pictures::decode_texture("t.png", read_bytes(file), content).sample({0.5f, 0.5f}).g;
   };
   CHECK(value(pictures::TextureContent::srgb) == Approx(linear(128)));
   CHECK(value(pictures::TextureContent::color) == Approx(128 / 255.0).epsilon(5e-3));  // 8 bits
-  const Scene scene = load_gltf(
-      [&] {
-        json document = square_document();
-        document["images"] = {{{"uri", file.string()}}};
-        document["textures"] = {{{"source", 0}}};
-        document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
-        return document;
-      }(),
-      [] {
-        SceneLoadOptions options;
-        options.allow_outside = true;
-        return options;
-      }());
+  json document = square_document();
+  document["images"] = {{{"uri", file.string()}}};
+  document["textures"] = {{{"source", 0}}};
+  document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+  SceneLoadOptions options;
+  options.allow_outside = true;
+  const Scene scene = load_gltf(document, options);
   CHECK(scene.textures.at(0).sample({0.5f, 0.5f}).g == Approx(linear(128)));
 }
 
 TEST_CASE("linear pictures are clamped and come back within half an 8-bit step") {
   const SceneFolderOnDisk folder;
   const std::filesystem::path file = folder.path / "t.exr";
-  write_picture<float>(file, 2, 1, 3, {0.5f, 0.1f, 0.9f, std::nanf(""), -1.0f, 7.0f},
-                       OIIO::TypeDesc::FLOAT);
+  write_picture<float>(file, 2, 1, 3, {0.5f, 0.1f, 0.9f, std::nanf(""), -1.0f, 7.0f});
   const Texture texture = pictures::decode_texture("t.exr", read_bytes(file));
   const glm::vec3 first = texture.sample({0.25f, 0.5f}), second = texture.sample({0.75f, 0.5f});
   CHECK(first.r == Approx(0.5).margin(0.005));
@@ -179,7 +149,7 @@ TEST_CASE("channels of an EXR behind its picture are no alpha") {
 TEST_CASE("a PNG header that promises too many pixels is refused before decoding") {
   const SceneFolderOnDisk folder;
   const std::filesystem::path file = folder.path / "t.png";
-  write_picture<std::uint8_t>(file, 1, 1, 3, {1, 2, 3}, OIIO::TypeDesc::UINT8);
+  write_picture<std::uint8_t>(file, 1, 1, 3, {1, 2, 3});
   std::vector<unsigned char> bytes = read_bytes(file);
   CHECK_THROWS_WITH(pictures::decode_texture("t.png", bytes, pictures::TextureContent::color, 3),
                     Catch::Contains("1 x 1 texels"));
@@ -200,8 +170,7 @@ TEST_CASE("a PNG header that promises too many pixels is refused before decoding
 TEST_CASE("truncated and unknown pictures are refused by name") {
   const SceneFolderOnDisk folder;
   const std::filesystem::path file = folder.path / "t.png";
-  write_picture<std::uint8_t>(file, 64, 64, 3, std::vector<std::uint8_t>(64 * 64 * 3, 7),
-                              OIIO::TypeDesc::UINT8);
+  write_picture(file, 64, 64, 3, std::vector<std::uint8_t>(64 * 64 * 3, 7));
   std::vector<unsigned char> bytes = read_bytes(file);
   bytes.resize(20);
   CHECK_THROWS_AS(pictures::decode_texture("t.png", bytes), files::ResourceError);

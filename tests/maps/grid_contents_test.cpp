@@ -1,10 +1,8 @@
 // The grids on the device against a host reference: every photon is in the maps that it must be in,
 // in the cell that its projection falls in, in ascending order.
 #include <catch2/catch.hpp>
-#include <glm/gtc/constants.hpp>
 #include <map>
 #include <numeric>
-#include <random>
 #include <set>
 
 #include "maps/build_steps.hpp"
@@ -21,7 +19,7 @@ namespace {
 template <class T>
 std::vector<T> download(const device::Buffer<T>& buffer) {
   std::vector<T> values(buffer.size());
-  device::context_of(test::device()).read(buffer, std::span(values));
+  device::context_of(device()).read(buffer, std::span(values));
   return values;
 }
 
@@ -108,8 +106,8 @@ void check_against_reference(const Scene& scene, const Photons& photons, double 
                              bool given_up = false) {
   const NeighbourGroups groups = find_neighbour_groups(scene, {radius, 60});
   const PhotonMaps photon_maps =
-      given_up ? PhotonMaps(test::device(), scene, Photons(photons), groups, {radius, 4})
-               : PhotonMaps(test::device(), scene, photons, groups, {radius, 4});
+      given_up ? PhotonMaps(device(), scene, Photons(photons), groups, {radius, 4})
+               : PhotonMaps(device(), scene, photons, groups, {radius, 4});
   Contents contents = read_contents(photon_maps, photons);
   CHECK(contents.cells_ascend);
   CHECK(contents.cells_agree);
@@ -146,12 +144,11 @@ void check_against_reference(const Scene& scene, const Photons& photons, double 
 }
 
 TEST_CASE("the shared grid struct has the same size on the device as on the host") {
-  auto& context = device::context_of(test::device());
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
-  const Photons photons = test::uniform_photons(scene, 100, 1, false);
-  const PhotonMaps photon_maps(test::device(), scene, photons,
-                               find_neighbour_groups(scene, {0.1, 60}), {0.1, 4});
+  auto& context = device::context_of(device());
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1}});
+  const Photons photons = uniform_photons(scene, 100, 1, false);
+  const PhotonMaps photon_maps(device(), scene, photons, find_neighbour_groups(scene, {0.1, 60}),
+                               {0.1, 4});
   // A device that laid the struct out otherwise would not return the values it was sized with.
   const auto grids = download(maps::store_of(photon_maps).pages.use(0).grids);
   int with_photons = 0;
@@ -169,44 +166,40 @@ TEST_CASE("the shared grid struct has the same size on the device as on the host
 }
 
 TEST_CASE("grid contents equal the host reference on a folded plate") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3);
-  test::add_plate(scene, {0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 2);
-  test::add_plate(scene, {0, 0, -0.02f}, {1, 0, 0}, {0, 1, 0}, 1);
-  check_against_reference(scene, test::uniform_photons(scene, 3000, 11), 0.15,
-                          GENERATE(false, true));
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 3},
+                                 {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 2},
+                                 {{0, 0, -0.02f}, {1, 0, 0}, {0, 1, 0}, 1}});
+  check_against_reference(scene, uniform_photons(scene, 3000, 11), 0.15, GENERATE(false, true));
 }
 
 TEST_CASE("grid contents equal the host reference on a torus, triangles smaller than the radius") {
-  Scene scene = test::empty_scene(3);
-  test::add_torus(scene, 1.0f, 0.4f, 24, 12);
-  check_against_reference(scene, test::uniform_photons(scene, 2000, 12), 0.3);
+  Scene scene = empty_scene(3);
+  add_torus(scene, 1.0f, 0.4f, 24, 12);
+  check_against_reference(scene, uniform_photons(scene, 2000, 12), 0.3);
 }
 
 TEST_CASE("grid contents equal the host reference far from the origin") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {148376, 1234, -223423}, {4, 0, 1}, {0, 4, 1}, 3);
-  check_against_reference(scene, test::uniform_photons(scene, 1000, 13), 0.5);
+  Scene scene = scene_of_plates({{{148376, 1234, -223423}, {4, 0, 1}, {0, 4, 1}, 3}});
+  check_against_reference(scene, uniform_photons(scene, 1000, 13), 0.5);
 }
 
 TEST_CASE("a needle triangle and photons in one point are inserted like any other") {
-  Scene scene = test::empty_scene();
-  test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0.5f, 1e-6f, 0});
-  test::add_plate(scene, {0, -1, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  Scene scene = empty_scene();
+  add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0.5f, 1e-6f, 0});
+  add_plate(scene, {0, -1, 0}, {1, 0, 0}, {0, 1, 0}, 1);
   std::mt19937_64 random(5);
   Photons photons;
-  for (int i = 0; i < 500; ++i) test::add_photon(photons, scene, {0.5f, 0, 0}, 0, random);
+  for (int i = 0; i < 500; ++i) add_photon(photons, scene, {0.5f, 0, 0}, 0, random);
   for (int i = 0; i < 500; ++i) {
-    test::add_photon(photons, scene, test::random_point(scene, 1, random), 2, random);
+    add_photon(photons, scene, random_point(scene, 1, random), 2, random);
   }
   check_against_reference(scene, sort_by_oriented_face(std::move(photons), 6), 0.2);
 }
 
 TEST_CASE("naive maps hold exactly the photons of their own oriented face") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
-  const Photons photons = test::uniform_photons(scene, 4000, 14);
-  const PhotonMaps photon_maps(test::device(), scene, photons, naive_groups(scene), {0.2, 4});
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 4}});
+  const Photons photons = uniform_photons(scene, 4000, 14);
+  const PhotonMaps photon_maps(device(), scene, photons, naive_groups(scene), {0.2, 4});
   Contents contents = read_contents(photon_maps, photons);
   CHECK(photon_maps.statistics().references == photons.size());
   std::size_t photons_held = 0;
@@ -219,22 +212,21 @@ TEST_CASE("naive maps hold exactly the photons of their own oriented face") {
 }
 
 TEST_CASE("maps without any photon are built and empty") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1}});
   const Photons photons = sort_by_oriented_face(Photons{}, 4);
-  const PhotonMaps photon_maps(test::device(), scene, photons,
-                               find_neighbour_groups(scene, {0.1, 60}), {0.1, 4});
+  const PhotonMaps photon_maps(device(), scene, photons, find_neighbour_groups(scene, {0.1, 60}),
+                               {0.1, 4});
   CHECK(photon_maps.statistics().references == 0);
   CHECK(maps::store_of(photon_maps).pages.empty());
 }
 
 TEST_CASE("two builds give the same bits") {
-  Scene scene = test::empty_scene();
-  test::add_torus(scene, 1.0f, 0.4f, 16, 8);
-  const Photons photons = test::uniform_photons(scene, 50'000, 15);
+  Scene scene = empty_scene();
+  add_torus(scene, 1.0f, 0.4f, 16, 8);
+  const Photons photons = uniform_photons(scene, 50'000, 15);
   const NeighbourGroups groups = find_neighbour_groups(scene, {0.2, 60});
-  const PhotonMaps first(test::device(), scene, photons, groups, {0.2, 4});
-  const PhotonMaps second(test::device(), scene, photons, groups, {0.2, 4});
+  const PhotonMaps first(device(), scene, photons, groups, {0.2, 4});
+  const PhotonMaps second(device(), scene, photons, groups, {0.2, 4});
   REQUIRE(maps::store_of(first).pages.size() == maps::store_of(second).pages.size());
   for (std::size_t i = 0; i < maps::store_of(first).pages.size(); ++i) {
     CHECK(download(maps::store_of(first).pages.use(i).record_photon) ==
@@ -245,13 +237,13 @@ TEST_CASE("two builds give the same bits") {
 }
 
 TEST_CASE("photons that are given up leave the normals that kept ones do, and are gone") {
-  Scene scene = test::empty_scene();
-  test::add_torus(scene, 1.0f, 0.4f, 16, 8);
-  const Photons photons = test::uniform_photons(scene, 50'000, 15);
+  Scene scene = empty_scene();
+  add_torus(scene, 1.0f, 0.4f, 16, 8);
+  const Photons photons = uniform_photons(scene, 50'000, 15);
   Photons given_up = photons;
   const NeighbourGroups groups = find_map_groups(scene, photons, MapMode::patch, {0.2, 60});
-  const PhotonMaps kept(test::device(), scene, photons, groups, {0.2, 4});
-  const PhotonMaps gone(test::device(), scene, std::move(given_up), groups, {0.2, 4});
+  const PhotonMaps kept(device(), scene, photons, groups, {0.2, 4});
+  const PhotonMaps gone(device(), scene, std::move(given_up), groups, {0.2, 4});
   REQUIRE(kept.statistics().normal_filtered_maps > 0);
   CHECK(given_up.size() == 0);
   REQUIRE(maps::store_of(kept).pages.size() == 1);
@@ -263,18 +255,16 @@ TEST_CASE("photons that are given up leave the normals that kept ones do, and ar
 }
 
 TEST_CASE("a radius beyond the groups' or no number is refused") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
-  const Photons photons = test::uniform_photons(scene, 10, 1);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1}});
+  const Photons photons = uniform_photons(scene, 10, 1);
   const NeighbourGroups groups = find_neighbour_groups(scene, {0.1, 60});
   for (const double radius : {0.2, 0.0, -1.0, std::nan("")}) {
-    CHECK_THROWS_AS(PhotonMaps(test::device(), scene, photons, groups, {radius, 4}), UsageError);
+    CHECK_THROWS_AS(PhotonMaps(device(), scene, photons, groups, {radius, 4}), UsageError);
   }
 }
 
 device::KernelSet kernels() {
-  return {device::context_of(test::device()), "shared/scan.cl",
-          maps::group_defines(test::device().info())};
+  return {device::context_of(device()), "shared/scan.cl", maps::group_defines(device().info())};
 }
 
 TEST_CASE("the device's prefix sum equals the host's for awkward sizes") {
@@ -308,12 +298,12 @@ TEST_CASE("the prefix sum of nothing is nothing") {
 /// Photons on the front of a unit plate of two triangles (or of more), only where x < lit.
 Photons photons_on_part(const Scene& scene, float lit, std::size_t count) {
   std::mt19937_64 random(61);
-  auto pick = test::by_area(scene);
+  auto pick = by_area(scene);
   Photons photons;
   while (photons.size() < count) {
     const std::uint32_t triangle = pick(random);
-    const glm::vec3 point = test::random_point(scene, triangle, random);
-    if (point.x < lit) test::add_photon(photons, scene, point, oriented(triangle, 0), random);
+    const glm::vec3 point = random_point(scene, triangle, random);
+    if (point.x < lit) add_photon(photons, scene, point, oriented(triangle, 0), random);
   }
   return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
 }
@@ -321,8 +311,7 @@ Photons photons_on_part(const Scene& scene, float lit, std::size_t count) {
 TEST_CASE("density_ratio is one over the part of a surface that is lit evenly") {
   const int cells = GENERATE(1, 32);  // large triangles are divided, small ones are bins themselves
   const float lit = GENERATE(1.0f, 0.5f, 0.25f);
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, cells);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, cells}});
   const Photons photons = photons_on_part(scene, lit, 60'000);
   Patches patch;  // one for all
   patch.first_of = {0, static_cast<std::uint32_t>(scene.triangle_count())};
@@ -341,8 +330,7 @@ TEST_CASE("density_ratio is one over the part of a surface that is lit evenly") 
 }
 
 TEST_CASE("photons one by one crowd nothing") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1}});
   for (const std::size_t count : {0u, 1u}) {
     const Photons photons = photons_on_part(scene, 1.0f, count);
     for (const float value : maps::photon_density_ratio(scene, photons, {})) CHECK(value == 1.0f);

@@ -1,18 +1,14 @@
 // Maps in parts of the device's memory.
 
 #include <catch2/catch.hpp>
-#include <random>
-#include <vector>
 
 #include "maps/candidate_maps.hpp"
 #include "maps/map_page.hpp"
 #include "maps/map_store.hpp"
 #include "maps/photon_pages.hpp"
 #include "maps/resident_maps.hpp"
-#include "photile/device.hpp"
 #include "photile/errors.hpp"
 #include "photile/photon_maps.hpp"
-#include "photile/scene.hpp"
 #include "photon_sets.hpp"
 #include "test_device.hpp"
 
@@ -99,9 +95,8 @@ TEST_CASE("no photons need no pages") {
 }
 
 TEST_CASE("photon pages cover every photon once, in order, within the limit") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 8);
-  const Photons photons = test::uniform_photons(scene, 5000, 3);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 8}});
+  const Photons photons = uniform_photons(scene, 5000, 3);
   const maps::CandidateMaps candidates =
       maps::find_candidate_maps(scene, photons, find_neighbour_groups(scene, {0.2, 60}), 0.2f);
   const std::uint64_t max_bytes = 9'000;
@@ -127,9 +122,9 @@ TEST_CASE("photon pages cover every photon once, in order, within the limit") {
 
 /// Plates of 4 x 4 squares, 1 m wide, side by side 3 m apart.
 Scene plates(int count) {
-  Scene scene = test::empty_scene();
+  Scene scene = empty_scene();
   for (int i = 0; i < count; ++i) {
-    test::add_plate(scene, {3.0f * static_cast<float>(i), 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
+    add_plate(scene, {3.0f * static_cast<float>(i), 0, 0}, {1, 0, 0}, {0, 1, 0}, 4);
   }
   return scene;
 }
@@ -142,8 +137,7 @@ Photons photons_on(int lit, int count, const Scene& scene) {
       static_cast<std::uint32_t>(scene.triangle_count()) / static_cast<std::uint32_t>(count);
   for (std::uint32_t t = 0; t < static_cast<std::uint32_t>(lit) * per_plate; ++t) {
     for (int i = 0; i < 4; ++i) {
-      test::add_photon(photons, scene, test::random_point(scene, t, random), oriented(t, 0),
-                       random);
+      add_photon(photons, scene, random_point(scene, t, random), oriented(t, 0), random);
     }
   }
   return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
@@ -183,7 +177,7 @@ TEST_CASE("device memory is that of the places with light, not of the 1,000 plac
     CHECK(static_cast<double>(among.map_bytes) ==
           Approx(static_cast<double>(alone.map_bytes)).epsilon(0.03));
     // Other devices than CPUs hold copies of the host's arrays of triangles while they build.
-    if (test::device().info().type == DeviceType::cpu) {
+    if (device().info().type == DeviceType::cpu) {
       CHECK(static_cast<double>(among.peak_bytes) ==
             Approx(static_cast<double>(alone.peak_bytes)).epsilon(0.03));
     }

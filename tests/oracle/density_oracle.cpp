@@ -8,7 +8,6 @@
 
 #include "oracle/kernel_weights.hpp"
 #include "photile/neighbour_groups.hpp"
-#include "photile/scene.hpp"
 
 namespace photile::reference {
 namespace {

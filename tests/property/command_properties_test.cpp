@@ -3,7 +3,6 @@
 //
 // PHOTILE_PROPERTIES is how many commands are tried, PHOTILE_PROPERTIES_SEED the first; a failure
 // tells its command and its number, by which it can be tried alone.
-#include <stdlib.h>
 
 #include <algorithm>
 #include <bit>

@@ -50,16 +50,14 @@ page.frame = (time) => {
 KEY_CODES = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Escape": 27, "Tab": 9, "Delete": 46,
              "Shift": 16, "F2": 113, "[": 219, "]": 221, "PageDown": 34}
 
-BYTES = """
-const bytes = new Uint8Array(arguments[0].buffer);
-let text = '';
-for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
-return btoa(text);
+BASE64 = """
+const base64 = (array) => {
+  const bytes = new Uint8Array(array.buffer);
+  let text = '';
+  for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
+  return btoa(text);
+};
 """
-RADIANCE = """
-const [width, height] = arguments;
-arguments = [page.renderer.radiance(page.walker, width, height, 4)];
-""" + BYTES
 # Paints all that is not matt black, lamps included, and leaves reflections out, and back: pixels that do
 # not change see matt surfaces alone. Normal maps, which a page leaves out, count as not matt.
 SHOW_MATT_ONLY = """
@@ -145,8 +143,11 @@ class Browser:
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)
 
-    def radiance(self):
-        text = self.run(RADIANCE, *SIZE)
+    def radiance(self, samples=4, mode=1):
+        """Of each pixel; of mode 2 what V's colours stand for."""
+        text = self.run(BASE64 + "const [width, height, ...how] = arguments;"
+                                 "return base64(page.renderer.radiance(page.walker, width, height, ...how));",
+                        *SIZE, samples, mode)
         return np.frombuffer(base64.b64decode(text), np.float32).reshape(SIZE[1], SIZE[0], 3)
 
     def hold(self, key, seconds, code=None, modifiers=0):
@@ -178,6 +179,11 @@ class Browser:
     def mouse(self, kind, x, y, **more):
         self.run_command("Input.dispatchMouseEvent",
                          {"type": f"mouse{kind}", "x": x, "y": y, "button": "left", "clickCount": 1, **more})
+
+    def turn_wheel(self, **more):
+        self.run_command("Input.dispatchMouseEvent",
+                         {"type": "mouseWheel", "x": 100, "y": 100, "deltaX": 0, "deltaY": -100, **more})
+        self.rest()
 
     def touch(self, kind, *points):
         self.run_command("Input.dispatchTouchEvent",
@@ -376,6 +382,20 @@ def test_office(browser, folder):
                 ["--luminaires", panels])
 
 
+def write_obj(file, quads, materials):
+    """The corners of quads, and the lines of MTL, by the materials' names."""
+    lines, count = [f"mtllib {file.stem}.mtl"], 0
+    for material, faces in quads.items():
+        lines.append(f"usemtl {material}")
+        for corners in faces:
+            lines += ["v %g %g %g" % corner for corner in corners]
+            lines.append("f " + " ".join(str(count + i) for i in (1, 2, 3, 4)))
+            count += 4
+    file.with_suffix(".mtl").write_text("".join(f"newmtl {name}\n{text}\n" for name, text in materials.items()))
+    file.write_text("\n".join(lines) + "\n")
+    return file
+
+
 def obj_room(folder):
     """A hall of 6 x 3 x 5 m with a table, two lamps under its ceiling, and a mood. Its file."""
     quads = {"grey": [[(0, 0, 0), (0, 0, 5), (6, 0, 5), (6, 0, 0)], [(0, 3, 0), (6, 3, 0), (6, 3, 5), (0, 3, 5)],
@@ -384,20 +404,10 @@ def obj_room(folder):
                       [(4, 0.8, 1), (4, 0.8, 2), (5, 0.8, 2), (5, 0.8, 1)]],
              "left": [[(1, 2.9, 2), (2, 2.9, 2), (2, 2.9, 3), (1, 2.9, 3)]],
              "right": [[(4, 2.9, 2), (5, 2.9, 2), (5, 2.9, 3), (4, 2.9, 3)]]}
-    lines, count = ["mtllib hall.mtl"], 0
-    for material, faces in quads.items():
-        lines.append(f"usemtl {material}")
-        for corners in faces:
-            lines += ["v %g %g %g" % corner for corner in corners]
-            lines.append("f " + " ".join(str(count + i) for i in (1, 2, 3, 4)))
-            count += 4
-    (folder / "hall.mtl").write_text("newmtl grey\nKd 0.5 0.5 0.5\nnewmtl left\nKd 0 0 0\nKe 100 90 80\n"
-                                     "newmtl right\nKd 0 0 0\nKe 80 90 100\n")
     (folder / "hall.moods.json").write_text(json.dumps({"photile_moods": 1, "moods": {
         "left alone": {"right": {"power": 0, "unit": "lm", "on": False}}}}))
-    file = folder / "hall.obj"
-    file.write_text("\n".join(lines) + "\n")
-    return file
+    return write_obj(folder / "hall.obj", quads, {"grey": "Kd 0.5 0.5 0.5", "left": "Kd 0 0 0\nKe 100 90 80",
+                                                  "right": "Kd 0 0 0\nKe 80 90 100"})
 
 
 STAND = """
@@ -492,9 +502,7 @@ def check_orbit(browser):
             near(eye[1], 2.2, 0.01)  # nobody who walks is taller
     assert browser.run("return document.querySelectorAll('#rings i').length") == 0
     browser.run(STAND, MIDDLE, NORTH)
-    browser.run_command("Input.dispatchMouseEvent", {"type": "mouseWheel", "x": 100, "y": 100, "deltaX": 0,
-                                                     "deltaY": -100, "modifiers": 2})
-    browser.rest()
+    browser.turn_wheel(modifiers=2)
     assert browser.viewer()["angle"] == 1  # that is the browser's zoom
 
 
@@ -527,9 +535,7 @@ def check_mouse(browser):
     browser.rest()
     viewer = browser.viewer()  # what was under the pointer stays there, near the middle
     near([viewer["yaw"], viewer["pitch"]], [20 / SIZE[1], 10 / SIZE[1]], 1e-6)
-    browser.run_command("Input.dispatchMouseEvent",
-                        {"type": "mouseWheel", "x": 100, "y": 100, "deltaX": 0, "deltaY": -100})
-    browser.rest()
+    browser.turn_wheel()
     near(browser.viewer()["angle"], math.exp(-0.08), 1e-6)
     check_orbit(browser)
     browser.run(STAND, MIDDLE, [0, -0.8, -0.6])
@@ -686,9 +692,7 @@ document.getElementById(field).dispatchEvent(new Event('input'));"""
     browser.run(choose, "top", top)
     share = np.array(browser.run("return page.renderer.seenLux(page.walker)"))
     assert len(share) == 96 * 64 and 0.01 < (share > top).mean() < 0.2
-    steps = np.frombuffer(base64.b64decode(browser.run(
-        "arguments = [page.renderer.radiance(page.walker, 320, 200, 1, 2)];" + BYTES)), np.float32).reshape(200, 320, 3)
-    steps = steps[:, :, 0] * browser.run("return room.lux") / top * 8
+    steps = browser.radiance(1, 2)[:, :, 0] * browser.run("return room.lux") / top * 8
     off = np.abs(steps % 1 - 0.5)
     for contours, drawn, left in ((2, None, 0.25), (3, 0.08, 0.12)):
         browser.run(choose, "contours", contours)
@@ -897,7 +901,7 @@ def test_controls(browser, folder):
 
 
 # The light of a frame and what the canvas shows of it, rows from below.
-FRAME = """
+FRAME = BASE64 + """
 page.setExposure(arguments[0]);
 const {renderer} = page, {gl, screen} = renderer;
 renderer.draw(page.walker);
@@ -907,13 +911,7 @@ gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, shown);
 gl.bindFramebuffer(gl.FRAMEBUFFER, screen.pixels);
 gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, light);
 gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-const text = (array) => {
-  const bytes = new Uint8Array(array.buffer);
-  let all = '';
-  for (let i = 0; i < bytes.length; i += 32768) all += String.fromCharCode(...bytes.subarray(i, i + 32768));
-  return btoa(all);
-};
-return [text(light), text(shown)];
+return [base64(light), base64(shown)];
 """
 
 
@@ -990,18 +988,13 @@ def test_display(browser, folder):
 
 def room_of_lights(folder, count):
     """A floor under rows of 16 small lamps."""
-    scene = folder / f"lights{count}.obj"
-    lines, faces = ["v -2 0 -2", "v 2 0 -2", "v 2 0 2", "v -2 0 2"], ["usemtl floor", "f 4 3 2 1"]
-    materials = ["newmtl floor\nKd 0.5 0.5 0.5"]
+    quads = {"floor": [[(-2, 0, 2), (2, 0, 2), (2, 0, -2), (-2, 0, -2)]]}
+    materials = {"floor": "Kd 0.5 0.5 0.5"}
     for i in range(count):
         x, z = -1.9 + 3.8 * (i % 16) / 16, -1.9 + 3.8 * (i // 16) / 16
-        first = len(lines) + 1
-        lines += [f"v {x} 2 {z}", f"v {x + 0.05} 2 {z}", f"v {x + 0.05} 2 {z + 0.05}", f"v {x} 2 {z + 0.05}"]
-        faces += [f"usemtl lamp{i}", f"f {first} {first + 1} {first + 2} {first + 3}"]
-        materials.append(f"newmtl lamp{i}\nKd 0 0 0\nKe 100 100 100")
-    (folder / f"lights{count}.mtl").write_text("\n".join(materials) + "\n")
-    scene.write_text("\n".join([f"mtllib lights{count}.mtl", *lines, *faces]) + "\n")
-    return scene
+        quads[f"lamp{i}"] = [[(x, 2, z), (x + 0.05, 2, z), (x + 0.05, 2, z + 0.05), (x, 2, z + 0.05)]]
+        materials[f"lamp{i}"] = "Kd 0 0 0\nKe 100 100 100"
+    return write_obj(folder / f"lights{count}.obj", quads, materials)
 
 
 def test_many_lights(browser, folder):

@@ -3,9 +3,7 @@
 #include <numbers>
 
 #include "path_irradiance.hpp"
-#include "statistical_tests.hpp"
 #include "suns.hpp"
-#include "test_scenes.hpp"
 #include "validation/analytic_cases.hpp"
 
 namespace photile::test {
@@ -14,19 +12,19 @@ namespace {
 using std::numbers::pi;
 
 const glm::dvec3 up(0, 0, 1);
-const Material black = test::diffuse(glm::vec3(0.0f));
+const Material black = diffuse(0.0f);
 
 double irradiance(const Scene& scene, const glm::dvec3& position) {
-  return test::path_means(scene, {{position, up}}, 1, 1).irradiance.at(0);
+  return path_means(scene, {{position, up}}, 1, 1).irradiance.at(0);
 }
 
 /// A black floor under a lamp of 0.8 x 0.6 m that faces down, 1 m above the floor's middle.
 Scene floor_under_lamp(bool two_sided, bool turned, const Material& floor = black) {
-  test::SceneBuilder builder;
+  SceneBuilder builder;
   const std::uint32_t material = builder.add(floor);
   const std::uint32_t dark = builder.add(black);
   builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, material);
-  const std::uint32_t lamp = builder.add(test::area_light("lamp", 1.0, two_sided));
+  const std::uint32_t lamp = builder.add(area_light("lamp", 1.0, two_sided));
   const glm::vec3 u(0.8f, 0, 0), v(0, 0.6f, 0), origin(-0.4f, -0.3f, 1);
   builder.grid(origin, turned ? u : v, turned ? v : u, 2, dark, lamp);
   return builder.build();
@@ -60,8 +58,8 @@ double pane_under_lamp() {
 }  // namespace
 
 TEST_CASE("a point light gives intensity times cosine over squared distance, without noise") {
-  Scene scene = test::plate(black, 6.0f, 2);
-  scene.lights.push_back(test::point_light("lamp", {0.3f, -0.2f, 1.5f}));
+  Scene scene = plate(black, 6.0f, 2);
+  scene.lights.push_back(point_light("lamp", {0.3f, -0.2f, 1.5f}));
   for (const glm::dvec3& point : {glm::dvec3(0.3, -0.2, 0), glm::dvec3(2, 1, 0)}) {
     const glm::dvec3 offset = glm::dvec3(0.3, -0.2, 1.5) - point;
     const double distance = glm::length(offset);
@@ -72,8 +70,8 @@ TEST_CASE("a point light gives intensity times cosine over squared distance, wit
 
 TEST_CASE(
     "a spot light has full intensity in its inner cone, none beyond its outer, all its flux") {
-  Scene scene = test::plate(black, 6.0f, 1);
-  scene.lights.push_back(test::spot_light("spot", {0, 0, 1}, {0, 0, -1}, 0.3f, 0.6f));
+  Scene scene = plate(black, 6.0f, 1);
+  scene.lights.push_back(spot_light("spot", {0, 0, 1}, {0, 0, -1}, 0.3f, 0.6f));
   const double inner = std::cos(0.3), outer = std::cos(0.6);
   // Flux of intensity 1: the inner cap, and the falloff by the midpoint rule.
   double flux = 2 * pi * (1 - inner);
@@ -91,8 +89,8 @@ TEST_CASE(
 }
 
 TEST_CASE("a directional light spreads its flux over the disc of the scene's bounding sphere") {
-  Scene scene = test::plate(black, 2.0f, 1);
-  scene.lights.push_back(test::sun_along(glm::normalize(glm::vec3(0.6f, 0, -0.8f))));
+  Scene scene = plate(black, 2.0f, 1);
+  scene.lights.push_back(sun_along(glm::normalize(glm::vec3(0.6f, 0, -0.8f))));
   CHECK(irradiance(scene, {0.1, 0.2, 0}) == Approx(0.8 / (pi * 2)).epsilon(1e-5));
 }
 
@@ -100,29 +98,27 @@ TEST_CASE("an area light gives its form factor times its radiance") {
   const Scene scene = floor_under_lamp(false, false);
   for (const glm::dvec3& point : {glm::dvec3(0, 0, 0), glm::dvec3(0.7, 0.9, 0)}) {
     const double truth = lamp_irradiance(point);
-    CHECK_VERDICT(
-        test::mean_is(test::path_irradiances(scene, {{point, up}}, 4000), truth, 0.02 * truth));
+    CHECK_VERDICT(mean_is(path_irradiances(scene, {{point, up}}, 4000), truth, 0.02 * truth));
   }
 }
 
 TEST_CASE("a lamp gives nothing from its back, and half from each side where it has two") {
-  CHECK(test::path_means(floor_under_lamp(false, true), {{{0, 0, 0}, up}}, 1, 2000)
-            .irradiance.at(0) == 0);
+  CHECK(path_means(floor_under_lamp(false, true), {{{0, 0, 0}, up}}, 1, 2000).irradiance.at(0) ==
+        0);
   for (const bool turned : {false, true}) {
     const double truth = 0.5 * lamp_irradiance({0, 0, 0});
-    CHECK_VERDICT(test::mean_is(
-        test::path_irradiances(floor_under_lamp(true, turned), {{{0, 0, 0}, up}}, 4000), truth,
-        0.02 * truth));
+    CHECK_VERDICT(mean_is(path_irradiances(floor_under_lamp(true, turned), {{{0, 0, 0}, up}}, 4000),
+                          truth, 0.02 * truth));
   }
 }
 
 TEST_CASE("a black wall hides what is behind it") {
-  Scene scene = test::plate(black, 6.0f, 1);
-  test::SceneBuilder builder;
+  Scene scene = plate(black, 6.0f, 1);
+  SceneBuilder builder;
   const std::uint32_t material = builder.add(black);
   builder.grid({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}, 1, material);
   builder.grid({0.5f, -3, 0}, {0, 6, 0}, {0, 0, 1}, 1, material);
-  builder.add(test::point_light("lamp", {0, 0, 1}));
+  builder.add(point_light("lamp", {0, 0, 1}));
   scene = builder.build();
   CHECK(irradiance(scene, {0.4, 0, 0}) > 0);
   CHECK(irradiance(scene, {1.0, 0, 0}) == 0);
@@ -131,50 +127,50 @@ TEST_CASE("a black wall hides what is behind it") {
 TEST_CASE("a pane of thin glass passes what Fresnel's equations say, from lamps of every kind") {
   // Straight on: F = ((n - 1) / (n + 1))^2 at each face, (1 - F) / (1 + F) through both.
   const double fresnel = 0.04, passed = (1 - fresnel) / (1 + fresnel);
-  test::SceneBuilder builder;
+  SceneBuilder builder;
   builder.grid({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}, 1, builder.add(black));
-  builder.grid({-3, -3, 0.5f}, {6, 0, 0}, {0, 6, 0}, 1, builder.add(test::glass(1.5f, true)));
+  builder.grid({-3, -3, 0.5f}, {6, 0, 0}, {0, 6, 0}, 1, builder.add(glass(1.5f, true)));
   Scene with_point = builder.build();
-  with_point.lights.push_back(test::point_light("lamp", {0, 0, 1}));
+  with_point.lights.push_back(point_light("lamp", {0, 0, 1}));
   CHECK(irradiance(with_point, {0, 0, 0}) == Approx(passed / (4 * pi)).epsilon(1e-5));
 
-  const std::uint32_t lamp = builder.add(test::area_light("lamp"));
+  const std::uint32_t lamp = builder.add(area_light("lamp"));
   builder.grid({-1, -1, 1}, {0, 2, 0}, {2, 0, 0}, 1, 0, lamp);
   const double truth = pane_under_lamp();
-  CHECK_VERDICT(test::mean_is(test::path_irradiances(builder.build(), {{{0, 0, 0}, up}}, 20'000),
-                              truth, 0.02 * truth));
+  CHECK_VERDICT(
+      mean_is(path_irradiances(builder.build(), {{{0, 0, 0}, up}}, 20'000), truth, 0.02 * truth));
 }
 
 TEST_CASE("a mirror shows the lamp's image") {
   // The lamp faces up; a mirror 1 m above it shows it 2 m above where it is.
-  test::SceneBuilder builder;
+  SceneBuilder builder;
   const std::uint32_t floor = builder.add(black);
   builder.grid({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}, 1, floor);
-  builder.grid({-6, -6, 1}, {0, 12, 0}, {12, 0, 0}, 1, builder.add(test::mirror(glm::vec3(0.9f))));
-  const std::uint32_t lamp = builder.add(test::area_light("lamp"));
+  builder.grid({-6, -6, 1}, {0, 12, 0}, {12, 0, 0}, 1, builder.add(mirror(0.9f)));
+  const std::uint32_t lamp = builder.add(area_light("lamp"));
   builder.grid({0.5f, -1.5f, 0.5f}, {1, 0, 0}, {0, 3, 0}, 1, floor, lamp);
   const double truth =
       0.9 / 3 * validation::rectangle_factor({0, 0, 0}, up, {0.5, -1.5, 1.5}, {1, 0, 0}, {0, 3, 0});
-  CHECK_VERDICT(test::mean_is(test::path_irradiances(builder.build(), {{{0, 0, 0}, up}}, 60'000),
-                              truth, 0.03 * truth));
+  CHECK_VERDICT(
+      mean_is(path_irradiances(builder.build(), {{{0, 0, 0}, up}}, 60'000), truth, 0.03 * truth));
 }
 
 TEST_CASE("each light of many is measured at its own power 1") {
-  Scene scene = test::plate(black, 4.0f, 1);
+  Scene scene = plate(black, 4.0f, 1);
   for (int i = 0; i < 3; ++i) {
-    scene.lights.push_back(test::point_light("lamp " + std::to_string(i),
-                                             {0, 0, static_cast<float>(1 + i)}, std::pow(10, i)));
+    scene.lights.push_back(point_light("lamp " + std::to_string(i),
+                                       {0, 0, static_cast<float>(1 + i)}, std::pow(10, i)));
   }
   std::vector<std::vector<double>> values(3);
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    const auto means = test::path_means(scene, {{{0, 0, 0}, up}}, seed, 20'000);
+    const auto means = path_means(scene, {{{0, 0, 0}, up}}, seed, 20'000);
     for (std::size_t light = 0; light < 3; ++light) {
       values[light].push_back(means.irradiance[light]);
     }
   }
   for (std::size_t light = 0; light < 3; ++light) {
     const double truth = 1 / (4 * pi * std::pow(static_cast<double>(light + 1), 2));
-    CHECK_VERDICT(test::mean_is(values[light], truth, 0.06 * truth));
+    CHECK_VERDICT(mean_is(values[light], truth, 0.06 * truth));
   }
 }
 

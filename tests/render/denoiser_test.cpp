@@ -1,38 +1,31 @@
 // The optional last step of a picture, --denoise. What it is given and what is kept of its answer
 // are tested with a denoiser of means, which is known in closed form.
-#include <catch2/catch.hpp>
-#include <cmath>
-#include <filesystem>
 #include <random>
-#include <string>
 
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
-#include "photile/renderer.hpp"
-#include "photile/scene.hpp"
 #include "pictures.hpp"
 #include "skipped.hpp"
 #include "source_folder.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
 
 using Catch::Matchers::Contains;
 
-constexpr int side = 3;
+constexpr int spot_side = 3;
 
 /// One layer, black but for the pixel in the middle.
 LightLayers spot(float radiance) {
-  LightLayers layers(side, side, std::vector<std::string>{"lamp"});
+  LightLayers layers(spot_side, spot_side, std::vector<std::string>{"lamp"});
   layers.layers[0].radiance[4] = glm::vec3(radiance);
   layers.layers[0].illuminance[4] = radiance;
   return layers;
 }
 
 DenoisingGuides same_surface() {
-  return {std::vector<glm::vec3>(side * side, glm::vec3(0.5f)),
-          std::vector<glm::vec3>(side * side, glm::vec3(0, 0, 1))};
+  return {std::vector<glm::vec3>(spot_side * spot_side, glm::vec3(0.5f)),
+          std::vector<glm::vec3>(spot_side * spot_side, glm::vec3(0, 0, 1))};
 }
 
 Denoiser means() { return Denoiser(PHOTILE_MEAN_DENOISER); }
@@ -87,7 +80,7 @@ TEST_CASE("radiance is denoised in proportion, illuminance stays") {
 TEST_CASE("each of many layers is denoised on its own") {
   std::vector<std::string> names;
   for (std::size_t i = 0; i <= max_dense_lights; ++i) names.push_back("lamp " + std::to_string(i));
-  LightLayers layers(side, side, names);
+  LightLayers layers(spot_side, spot_side, names);
   REQUIRE(layers.sparse());
   layers.rows[1] = {
       .first = {0, 0, 1, 1}, .light = {7}, .radiance = {glm::vec3(9)}, .illuminance = {2}};
@@ -117,7 +110,7 @@ TEST_CASE("guides are denoised before they lead") {
 }
 
 TEST_CASE("values move by no more than their known errors allow") {
-  LightLayers errors(side, side, std::vector<std::string>{"lamp"});
+  LightLayers errors(spot_side, spot_side, std::vector<std::string>{"lamp"});
   errors.layers[0].radiance[0] = glm::vec3(0.1f);
   const LightLayers denoised = means().denoised(spot(9), same_surface(), &errors);
   CHECK(denoised.layers[0].radiance[4].x == 9);  // is exact

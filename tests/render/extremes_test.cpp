@@ -1,22 +1,12 @@
 // Pictures of unusual scenes.
-#include <fmt/format.h>
-
-#include <catch2/catch.hpp>
-#include <cmath>
-#include <glm/gtc/constants.hpp>
 
 #include "garbage.hpp"
 #include "instanced_scenes.hpp"
 #include "loading/scene_files.hpp"
-#include "photile/errors.hpp"
-#include "photile/renderer.hpp"
 #include "pictures.hpp"
 #include "shared_scenes.hpp"
 #include "skipped.hpp"
-#include "statistical_tests.hpp"
 #include "suns.hpp"
-#include "test_device.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -119,7 +109,7 @@ const std::string gltf_text = R"({
 
 /// A room of glTF with dented balls as instances, all of it below a node at `offset`.
 Scene gltf_room(const glm::dvec3& offset) {
-  const SharedMesh ball = test::dented_ball(66);
+  const SharedMesh ball = dented_ball(66);
   std::vector<float> positions;
   std::vector<std::uint32_t> indices;
   for (const glm::vec3& v : ball.vertices) positions.insert(positions.end(), {v.x, v.y, v.z});
@@ -129,8 +119,8 @@ Scene gltf_room(const glm::dvec3& offset) {
   const std::vector<std::uint32_t> box_indices = {0, 1, 2, 0, 2, 3, 4, 6, 5, 4, 7, 6,
                                                   0, 4, 5, 0, 5, 1, 3, 2, 6, 3, 6, 7,
                                                   0, 3, 7, 0, 7, 4, 1, 5, 6, 1, 6, 2};
-  const std::vector<std::string> parts = {test::bytes_of(box), test::bytes_of(box_indices),
-                                          test::bytes_of(positions), test::bytes_of(indices)};
+  const std::vector<std::string> parts = {bytes_of(box), bytes_of(box_indices), bytes_of(positions),
+                                          bytes_of(indices)};
   const std::vector<std::size_t> counts = {8, box_indices.size(), ball.vertices.size(),
                                            indices.size()};
   json document = json::parse(gltf_text);
@@ -145,7 +135,7 @@ Scene gltf_room(const glm::dvec3& offset) {
   }
   document["buffers"][0]["byteLength"] = buffer.size();
   document["nodes"][0]["translation"] = {offset.x, offset.y, offset.z};
-  const test::SceneFolderOnDisk folder;
+  const SceneFolderOnDisk folder;
   folder.write("room.bin", buffer);
   return load_scene(folder.write("room.gltf", document.dump()));
 }
@@ -162,14 +152,14 @@ LightLayers picture_of(const Scene& scene, const glm::dvec3& offset, LightMapMod
     parameters.photons.emitted_photons *= 64;
     parameters.neighbours *= 32;
   }
-  return render(scene, camera_at(scene, offset), test::device(), parameters).layers;
+  return render(scene, camera_at(scene, offset), device(), parameters).layers;
 }
 
 TEST_CASE("extremes: a thousand kilometres off, files give the picture of a scene at the origin") {
   const bool is_obj = GENERATE(true, false);
   const LightMapMode light_maps = GENERATE(LightMapMode::off, LightMapMode::on);
   const auto scene_at = [&](const glm::dvec3& offset) {
-    return is_obj ? test::load_obj(room_text(offset), room_materials) : gltf_room(offset);
+    return is_obj ? load_obj(room_text(offset), room_materials) : gltf_room(offset);
   };
   const Scene at_origin = scene_at(glm::dvec3(0));
   REQUIRE(at_origin.instances.size() == (is_obj ? 0u : 3u));
@@ -196,14 +186,14 @@ TEST_CASE("extremes: a thousand kilometres off, files give the picture of a scen
 
 TEST_CASE("extremes: a room a million times larger or smaller gives the same picture, scaled") {
   const auto scaled_room = [](float factor, LightMapMode light_maps) {
-    Scene scene = test::furnished_room(2);
+    Scene scene = furnished_room(2);
     for (glm::vec3& vertex : scene.vertices) vertex *= factor;
     for (Light& light : scene.lights) light.position *= factor;
-    Camera camera = test::room_camera();
+    Camera camera = room_camera();
     camera.position *= factor;
     RenderParameters parameters = one_pass_picture();
     parameters.light_maps = light_maps;
-    RenderResult result = render(scene, camera, test::device(), parameters);
+    RenderResult result = render(scene, camera, device(), parameters);
     for (auto& layer : result.layers.layers) {
       for (glm::vec3& radiance : layer.radiance) radiance *= factor * factor;
     }
@@ -251,11 +241,10 @@ TEST_CASE("extremes: a lamp of a millimetre in a hall of 1e5 m lights it as theo
   vertex(x + half, y + half, height), vertex(x + half, y - half, height);
   text += "f 9 10 11 12\n";
   const Scene scene =
-      test::load_obj(text, "newmtl lamp\nKd 0 0 0\nKe 1e6 1e6 1e6\nnewmtl wall\nKd 0 0 0\n");
+      load_obj(text, "newmtl lamp\nKd 0 0 0\nKe 1e6 1e6 1e6\nnewmtl wall\nKd 0 0 0\n");
   REQUIRE(scene.triangle_count() == 14);
   const RayScene rays(scene);
-  std::vector<double> within;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+  const std::vector<double> within = of_seeds([&](std::uint64_t seed) {
     const PhotonTracerResult traced =
         trace_photons(rays, {.emitted_photons = 20'000, .seed = seed});
     CHECK(traced.escaped_flux_per_light[0] < 1e-3);
@@ -265,9 +254,9 @@ TEST_CASE("extremes: a lamp of a millimetre in a hall of 1e5 m lights it as theo
       const bool near = at.z < 1 && std::hypot(at.x - x, at.y - y) < height;
       if (near) flux += luminance(glm::dvec3(traced.photons.flux[i]));
     }
-    within.push_back(flux);
-  }
-  CHECK_VERDICT(test::mean_is(within, 0.5, 0.02));
+    return flux;
+  });
+  CHECK_VERDICT(mean_is(within, 0.5, 0.02));
 }
 
 TEST_CASE(
@@ -282,8 +271,8 @@ TEST_CASE(
   parameters.film.width = parameters.film.height = 8;
   const auto error_of = [&](const std::string& obj) {
     try {
-      const Scene scene = test::load_obj(obj, test::lamp_and_wall);
-      render(scene, scene.cameras.front(), test::device(), parameters);
+      const Scene scene = load_obj(obj, lamp_and_wall);
+      render(scene, scene.cameras.front(), device(), parameters);
     } catch (const UsageError& error) {
       return std::string(error.what());
     }
@@ -303,11 +292,10 @@ TEST_CASE("garbage OBJ files that load are rendered to numbers, or refused in a 
   for (unsigned seed = 0; seed < 200; ++seed) {
     CAPTURE(seed);
     try {
-      const Scene scene = test::load_obj(test::garbage_obj(seed), test::lamp_and_wall);
+      const Scene scene = load_obj(garbage_obj(seed), lamp_and_wall);
       // Half of them with a radius that fits nothing.
       parameters.radius = seed % 4 < 2 ? 0 : std::pow(10.0, static_cast<int>(seed % 40) - 20);
-      const LightLayers layers =
-          render(scene, scene.cameras.front(), test::device(), parameters).layers;
+      const LightLayers layers = render(scene, scene.cameras.front(), device(), parameters).layers;
       ++rendered;
       for (const auto& layer : layers.layers) {
         for (const glm::vec3& radiance : layer.radiance)
@@ -326,8 +314,8 @@ TEST_CASE("garbage OBJ files that load are rendered to numbers, or refused in a 
 /// the whole picture's middle.
 double diagonal_over_middle(MapMode mode) {
   // Two triangles that meet along the diagonal.
-  Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 2.0f, 1);
-  scene.lights.push_back(test::sun_along({0, 0, -1}));
+  Scene scene = plate(diffuse(0.5f), 2.0f, 1);
+  scene.lights.push_back(sun_along({0, 0, -1}));
   // The camera sees the inner 1 x 1 m.
   const Camera camera =
       Camera::look_at({0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 2.0 * std::atan(0.5 / 2.0));
@@ -336,7 +324,7 @@ double diagonal_over_middle(MapMode mode) {
   parameters.maps = mode;
   constexpr int side = 100;
   parameters.film.width = parameters.film.height = side;
-  const auto layers = render(scene, camera, test::device(), parameters).layers;
+  const auto layers = render(scene, camera, device(), parameters).layers;
   const std::vector<float>& illuminance = layers.layers[0].illuminance;
   double diagonal = 0, middle = 0;
   int middle_count = 0;
@@ -389,17 +377,17 @@ PixelCounts values_of(const LightLayers& layers) {
 
 /// A hundred files of every kind: half of them are closed boxes, which are dark inside.
 TEST_CASE("every shared scene that loads renders to finite light under a sky", "[slow]") {
-  if (!std::filesystem::exists(test::shared_scenes_folder())) {
-    test::skip("no " + test::shared_scenes_folder().string());
+  if (!std::filesystem::exists(shared_scenes_folder())) {
+    skip("no " + shared_scenes_folder().string());
     return;
   }
   Device device;
   RenderParameters parameters = small_picture(2'000, 16, 12, 1);
   int pictures = 0, lit = 0;
-  for (const test::SharedScene& shared : test::shared_scenes) {
+  for (const SharedScene& shared : shared_scenes) {
     if (!shared.refusal.empty()) continue;
     CAPTURE(shared.file);
-    const Scene scene = test::load_shared_scene(shared);
+    const Scene scene = load_shared_scene(shared);
     const PixelCounts values =
         values_of(render(scene, scene.cameras.front(), device, parameters).layers);
     CHECK(values.bad == 0);

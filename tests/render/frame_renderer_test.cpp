@@ -1,7 +1,6 @@
 // Quick frames from light maps: what they show while nodes are lacking, and once none is.
 #include "render/frame_renderer.hpp"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -9,7 +8,6 @@
 
 #include "cache/charts.hpp"
 #include "cache/node_sources.hpp"
-#include "test_scenes.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/surface.hpp"
 

@@ -3,19 +3,12 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <catch2/catch.hpp>
 #include <glm/glm.hpp>
 #include <numbers>
 
 #include "cache/surface_cache.hpp"
 #include "photile/errors.hpp"
-#include "photile/renderer.hpp"
-#include "picture_in_parts.hpp"
 #include "pictures.hpp"
-#include "room_beside_paths.hpp"
-#include "statistical_tests.hpp"
-#include "test_device.hpp"
-#include "test_scenes.hpp"
 #include "validation/analytic_cases.hpp"
 
 namespace photile::test {
@@ -49,7 +42,7 @@ Scene glossy_room(const Material& floor) {
 
 /// A box of 96 m2 whose walls reflect that part of the light, and all emit the same.
 void add_furnace(float albedo, SceneBuilder& builder) {
-  const std::uint32_t wall = builder.add(diffuse(glm::vec3(albedo)));
+  const std::uint32_t wall = builder.add(diffuse(albedo));
   const std::uint32_t walls = builder.add(area_light("walls"));
   builder.box(glm::vec3(-2.0f), glm::vec3(2.0f), wall, true, 1, walls);
 }
@@ -66,7 +59,7 @@ Scene plate_in_furnace(const Material& material) {
 /// the lamp's image.
 Scene plate_under_lamp(const Material& material) {
   SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   builder.grid({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}, 1, builder.add(material));
   builder.grid({-0.25f, -0.25f, 1}, {0, 0.5f, 0}, {0.5f, 0, 0}, 1, black,
                builder.add(area_light("lamp")));
@@ -83,16 +76,15 @@ void check_in_furnace(double albedo, double f0, double alpha) {
                               glm::vec3(static_cast<float>(f0)), static_cast<float>(alpha)));
   // 96 m2 of walls, power 1.
   const double truth = validation::glossy_reflectance(albedo, f0, alpha) / (96 * pi);
-  std::vector<double> radiance;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+  const std::vector<double> radiance = of_seeds([&](std::uint64_t seed) {
     RenderParameters parameters = with_rays(seed);
     if (albedo > 0) {
       parameters.photons.emitted_photons = 220'000;
       parameters.neighbours = 1'100;
     }
     const RenderResult result = render(scene, above(0, 0, 0.5, 0.2), device(), parameters);
-    radiance.push_back(LayerMeans(result.layers.layers[0]).radiance / truth);
-  }
+    return LayerMeans(result.layers.layers[0]).radiance / truth;
+  });
   CHECK_VERDICT(mean_is(radiance, 1.0, 0.06));
 }
 
@@ -122,8 +114,7 @@ void check_light_of_walls(double albedo, double f0, double alpha) {
   const Camera camera = Camera::look_at({0, 0, 0.5}, {0, 0, 0}, {0, 1, 0}, 0.1);
   const double truth =
       validation::glossy_reflectance(albedo, f0, alpha) / (96 * pi * (1 - wall_albedo));
-  std::vector<double> radiance;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+  const std::vector<double> radiance = of_seeds([&](std::uint64_t seed) {
     RenderParameters parameters = with_rays(seed);
     parameters.light_map_rays = 16;
     parameters.film.samples_per_pixel = 64;
@@ -131,8 +122,8 @@ void check_light_of_walls(double albedo, double f0, double alpha) {
     parameters.photons.emitted_photons = 800'000;
     if (albedo > 0) parameters.light_map_rays = 64;
     const RenderResult result = render(scene, camera, device(), parameters);
-    radiance.push_back(LayerMeans(result.layers.layers[0]).radiance / truth);
-  }
+    return LayerMeans(result.layers.layers[0]).radiance / truth;
+  });
   CHECK_VERDICT(mean_is(radiance, 1.0, 0.02));
 }
 
@@ -150,9 +141,8 @@ TEST_CASE("gloss by rays: lobes of polish and of coats read what walls reflect l
 /// Whether a lamp's image in a plate is the path tracer's.
 void check_image_of_lamp(float alpha) {
   CAPTURE(alpha);
-  const Scene scene = plate_under_lamp(glossy(glm::vec3(0.0f), glm::vec3(0.6f), alpha));
-  std::vector<double> ratio;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+  const Scene scene = plate_under_lamp(glossy(0.0f, 0.6f, alpha));
+  const std::vector<double> ratio = of_seeds([&](std::uint64_t seed) {
     RenderParameters parameters = with_rays(seed);
     parameters.film.samples_per_pixel = 64;
     const double own =
@@ -160,9 +150,8 @@ void check_image_of_lamp(float alpha) {
     PrimaryHitParameters film = eye_rays(parameters);
     film.samples_per_pixel = 1024;
     film.seed = seed + 100;
-    ratio.push_back(own /
-                    LayerMeans(trace_paths(scene, at_image(), film).layers.layers[0]).radiance);
-  }
+    return own / LayerMeans(trace_paths(scene, at_image(), film).layers.layers[0]).radiance;
+  });
   CHECK_VERDICT(mean_is(ratio, 1.0, 0.05));
 }
 
@@ -178,10 +167,9 @@ TEST_CASE("gloss by rays: one sample of rough metal shows what it reflects witho
   // Its lobe looks half at a white ceiling, half at a black one: one ray would give all or nothing,
   // with a relative variance of 1.
   SceneBuilder builder;
-  builder.grid({-3, -3, 0}, {6, 0, 0}, {0, 9, 0}, 1,
-               builder.add(glossy(glm::vec3(0.0f), glm::vec3(0.9f), 0.05f)));
-  builder.grid({0, -3, 1}, {0, 9, 0}, {3, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.8f))));
-  builder.grid({-3, -3, 1}, {0, 9, 0}, {3, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
+  builder.grid({-3, -3, 0}, {6, 0, 0}, {0, 9, 0}, 1, builder.add(glossy(0.0f, 0.9f, 0.05f)));
+  builder.grid({0, -3, 1}, {0, 9, 0}, {3, 0, 0}, 1, builder.add(diffuse(0.8f)));
+  builder.grid({-3, -3, 1}, {0, 9, 0}, {3, 0, 0}, 1, builder.add(diffuse(0.0f)));
   Scene scene = builder.build();
   scene.lights = {point_light("lamp", {0.0f, 4.0f, 0.5f})};
   const Camera camera = Camera::look_at({0, -1, 0.8}, {0, 0, 0}, {0, 0, 1}, 0.005);
@@ -208,9 +196,8 @@ TEST_CASE("gloss by rays: a coated wall beside a lamp has no dark pixels") {
   const float alpha = GENERATE(0.05f, 0.2f);
   CAPTURE(alpha);
   SceneBuilder builder;
-  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1,
-               builder.add(glossy(glm::vec3(0.75f), glm::vec3(0.04f), alpha)));
-  builder.grid({-1, 1, 0}, {2, 0, 0}, {0, 0, 1}, 1, builder.add(diffuse(glm::vec3(0.0f))),
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(glossy(0.75f, 0.04f, alpha)));
+  builder.grid({-1, 1, 0}, {2, 0, 0}, {0, 0, 1}, 1, builder.add(diffuse(0.0f)),
                builder.add(area_light("pane")));
   const Scene scene = builder.build();
   RenderParameters parameters = with_rays();
@@ -239,18 +226,16 @@ TEST_CASE("gloss by rays: the narrowest lobe reflects a room as a mirror does", 
     const Scene scene = plate_under_lamp(material);
     return LayerMeans(render(scene, at_image(), device(), parameters).layers.layers[0]).radiance;
   };
-  std::vector<double> ratio;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    ratio.push_back(radiance_of(glossy(glm::vec3(0.0f), glm::vec3(1.0f), 0.02f), seed) /
-                    radiance_of(mirror(glm::vec3(1.0f)), seed));
-  }
+  const std::vector<double> ratio = of_seeds([&](std::uint64_t seed) {
+    return radiance_of(glossy(0.0f, 1.0f, 0.02f), seed) / radiance_of(mirror(1.0f), seed);
+  });
   CHECK_VERDICT(mean_is(ratio, 1.0, 0.03));
 }
 
 TEST_CASE("gloss by rays: lobes and light maps together see what paths see", "[long][slow]") {
   const RenderParameters parameters = many_rays();
-  check_room(furnished_room(3), glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f), parameters, 0.06);
-  check_room(furnished_room(3), glossy(glm::vec3(0.6f), glm::vec3(0.04f), 0.5f), parameters, 0.06);
+  check_room(furnished_room(3), glossy(0.4f, 0.3f, 0.1f), parameters, 0.06);
+  check_room(furnished_room(3), glossy(0.6f, 0.04f, 0.5f), parameters, 0.06);
 }
 
 TEST_CASE("gloss by rays: with light samples at each hit they see what paths see, too",
@@ -258,11 +243,11 @@ TEST_CASE("gloss by rays: with light samples at each hit they see what paths see
   RenderParameters parameters = many_rays();
   parameters.light_maps = LightMapMode::off;
   parameters.direct_rays = 2;
-  check_room(furnished_room(3), glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f), parameters, 0.06);
+  check_room(furnished_room(3), glossy(0.4f, 0.3f, 0.1f), parameters, 0.06);
 }
 
 TEST_CASE("gloss by rays: illuminance is that of the surface seen, as without lobes") {
-  const Material base = diffuse(glm::vec3(0.4f));
+  const Material base = diffuse(0.4f);
   RenderParameters parameters = with_rays();
   const Camera camera = above(2.6, 2.2, 2.0, 0.4);
   // Photons bounce alike where the lobe reflects next to nothing.
@@ -274,7 +259,7 @@ TEST_CASE("gloss by rays: illuminance is that of the surface seen, as without lo
 }
 
 TEST_CASE("gloss by rays: the same bits on any number of threads and in any rows") {
-  const Scene scene = glossy_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f));
+  const Scene scene = glossy_room(glossy(0.4f, 0.3f, 0.1f));
   RenderParameters parameters = with_rays();
   parameters.light_map_rays = GENERATE(0, 8);
   parameters.film.width = 48;
@@ -292,7 +277,7 @@ TEST_CASE("gloss by rays: the same bits on any number of threads and in any rows
 }
 
 TEST_CASE("gloss by rays: layers are the same whatever the powers") {
-  Scene scene = glossy_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f));
+  Scene scene = glossy_room(glossy(0.4f, 0.3f, 0.1f));
   scene.lights.pop_back();  // with one lamp the choice does not depend on it
   const LightLayers dim = render(scene, room_camera(), device(), with_rays()).layers;
   scene.lights[0].power *= 1024;
@@ -309,7 +294,7 @@ TEST_CASE("gloss by rays: where nothing is glossy, not a bit changes") {
 }
 
 TEST_CASE("gloss by rays: rays are for light maps unless asked for") {
-  const Scene scene = glossy_room(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.1f));
+  const Scene scene = glossy_room(glossy(0.4f, 0.3f, 0.1f));
   RenderParameters parameters = with_rays();
   parameters.gloss = GlossMode::automatic;
   const auto used = [&] { return render(scene, room_camera(), device(), parameters).used.gloss; };

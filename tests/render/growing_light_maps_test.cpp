@@ -2,16 +2,8 @@
 #define TBB_PREVIEW_GLOBAL_CONTROL 1
 #include <tbb/global_control.h>
 
-#include <catch2/catch.hpp>
-#include <memory>
-#include <vector>
-
-#include "photile/renderer.hpp"
 #include "pictures.hpp"
 #include "render/refinement.hpp"
-#include "render/render_session.hpp"
-#include "test_device.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {

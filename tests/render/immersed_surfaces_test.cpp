@@ -1,15 +1,9 @@
 // Surfaces in water and in glass, seen from outside and measured inside: radiance over the squared
 // index of refraction is what a boundary keeps, irradiance is flux per area in any medium.
-#include <catch2/catch.hpp>
-#include <cmath>
 #include <numbers>
 
-#include "photile/renderer.hpp"
 #include "photile/sensors.hpp"
 #include "pictures.hpp"
-#include "statistical_tests.hpp"
-#include "test_device.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -57,10 +51,10 @@ struct Pool {
   double unit;
 
   explicit Pool(double albedo) {
-    test::SceneBuilder builder("pool");
-    const auto floor = builder.add(test::diffuse(glm::vec3(static_cast<float>(albedo))));
-    const auto side = builder.add(test::mirror(glm::vec3(1.0f)));
-    const auto surface = builder.add(test::glass(static_cast<float>(water)));
+    SceneBuilder builder("pool");
+    const auto floor = builder.add(diffuse(glm::vec3(static_cast<float>(albedo))));
+    const auto side = builder.add(mirror(1.0f));
+    const auto surface = builder.add(glass(static_cast<float>(water)));
     const glm::vec3 low(-2, -2, -1), x(4, 0, 0), y(0, 4, 0), z(0, 0, 1);
     builder.grid(low, x, y, 1, floor);
     builder.grid(low + z, x, y, 1, surface);
@@ -85,7 +79,7 @@ Camera towards_water(double angle) {
 }
 
 RenderParameters parameters_of(std::uint64_t photons, int samples, std::uint64_t seed) {
-  RenderParameters parameters = test::small_picture(photons, picture_side, picture_side, samples);
+  RenderParameters parameters = small_picture(photons, picture_side, picture_side, samples);
   parameters.neighbours = 200;
   parameters.seed = seed;
   return parameters;
@@ -104,7 +98,7 @@ void check_pool(double albedo, double delta, const Pictures& pictures) {
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const std::vector<LightLayers> layers = pictures(pool.scene, cameras, seed);
     for (std::size_t i = 0; i < angles.size(); ++i) {
-      const test::LayerMeans mean(layers[i].layers[0]);
+      const LayerMeans mean(layers[i].layers[0]);
       radiance[i].push_back(mean.radiance / pool.unit / truth.radiance(angles[i]));
       illuminance[i].push_back(mean.illuminance / pool.unit /
                                ((1 - fresnel(angles[i])) * truth.irradiance));
@@ -112,14 +106,14 @@ void check_pool(double albedo, double delta, const Pictures& pictures) {
   }
   for (std::size_t i = 0; i < angles.size(); ++i) {
     CAPTURE(albedo, angles[i]);
-    CHECK_VERDICT(test::mean_is(radiance[i], 1, delta));
-    CHECK_VERDICT(test::mean_is(illuminance[i], 1, delta));
+    CHECK_VERDICT(mean_is(radiance[i], 1, delta));
+    CHECK_VERDICT(mean_is(illuminance[i], 1, delta));
   }
 }
 
 std::vector<LightLayers> by_maps(const Scene& scene, const std::vector<Camera>& cameras,
                                  const RenderParameters& parameters) {
-  SceneRenderer renderer(scene, std::span(&test::device(), 1), parameters);
+  SceneRenderer renderer(scene, std::span(&device(), 1), parameters);
   std::vector<LightLayers> layers;
   for (const Camera& camera : cameras) {
     layers.push_back(renderer.render(camera, parameters.film).layers);
@@ -133,11 +127,11 @@ double illuminance_of(const LightLayers& layers, std::size_t sensor) {
 
 /// A grey box cast in a block of glass that lies on a floor, under a luminous ceiling.
 Scene box_in_glass() {
-  test::SceneBuilder builder("box in glass");
-  const auto floor = builder.add(test::diffuse(glm::vec3(0.6f)));
-  const auto box = builder.add(test::diffuse(glm::vec3(0.4f)));
-  const auto block = builder.add(test::glass(1.5f));
-  const auto ceiling = builder.add(test::area_light("ceiling"));
+  SceneBuilder builder("box in glass");
+  const auto floor = builder.add(diffuse(0.6f));
+  const auto box = builder.add(diffuse(0.4f));
+  const auto block = builder.add(glass(1.5f));
+  const auto ceiling = builder.add(area_light("ceiling"));
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, floor);
   builder.grid({-1, -1, 1.6f}, {0, 2, 0}, {2, 0, 0}, 1, floor, ceiling);
   builder.box({-0.6f, -0.6f, 0.01f}, {0.6f, 0.6f, 0.8f}, block, false);
@@ -182,10 +176,10 @@ TEST_CASE("whatever is seen in a pool is seen by refraction or reflection") {
   const Pool pool(0.5);
   RenderParameters parameters = parameters_of(20'000, 16, 1);
   parameters.light_maps = GENERATE(LightMapMode::off, LightMapMode::on);
-  SceneRenderer renderer(pool.scene, std::span(&test::device(), 1), parameters);
+  SceneRenderer renderer(pool.scene, std::span(&device(), 1), parameters);
   const Camera camera = towards_water(0.3);
-  CHECK(test::same_bits(renderer.render(camera, parameters.film).layers,
-                        renderer.render_reflections(camera, parameters.film).layers));
+  CHECK(same_bits(renderer.render(camera, parameters.film).layers,
+                  renderer.render_reflections(camera, parameters.film).layers));
 }
 
 TEST_CASE("sensors under water read what the floor gets, and what it sends up") {
@@ -196,7 +190,7 @@ TEST_CASE("sensors under water read what the floor gets, and what it sends up") 
   std::vector<double> maps_down, maps_up, paths_down, paths_up;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const GatherParameters gathering{.rays = 4096};
-    const LightLayers maps = gather(pool.scene, sensors, gathering, std::span(&test::device(), 1),
+    const LightLayers maps = gather(pool.scene, sensors, gathering, std::span(&device(), 1),
                                     parameters_of(60'000, 1, seed))
                                  .layers;
     const LightLayers paths = gather_by_paths(pool.scene, sensors, gathering, seed).layers;
@@ -206,7 +200,7 @@ TEST_CASE("sensors under water read what the floor gets, and what it sends up") 
     paths_up.push_back(illuminance_of(paths, 1) / pool.unit / (albedo * truth));
   }
   for (const auto& values : {maps_down, maps_up, paths_down, paths_up}) {
-    CHECK_VERDICT(test::mean_is(values, 1, 0.06));
+    CHECK_VERDICT(mean_is(values, 1, 0.06));
   }
 }
 
@@ -220,7 +214,7 @@ TEST_CASE("a box cast in glass looks the same by photon maps and by paths") {
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     RenderParameters parameters = parameters_of(300'000, 400, seed);
     parameters.film.width = parameters.film.height = side;
-    const auto maps = render(scene, camera, test::device(), parameters).layers.layers[0];
+    const auto maps = render(scene, camera, device(), parameters).layers.layers[0];
     parameters.film.samples_per_pixel = 4'000;
     const auto paths = trace_paths(scene, camera, eye_rays(parameters)).layers.layers[0];
     for (std::size_t pixel = 0; pixel < radiance.size(); ++pixel) {
@@ -230,8 +224,8 @@ TEST_CASE("a box cast in glass looks the same by photon maps and by paths") {
     }
   }
   for (std::size_t pixel = 0; pixel < radiance.size(); ++pixel) {
-    CHECK_VERDICT(test::mean_is(radiance[pixel], 1, 0.15));
-    CHECK_VERDICT(test::mean_is(illuminance[pixel], 1, 0.15));
+    CHECK_VERDICT(mean_is(radiance[pixel], 1, 0.15));
+    CHECK_VERDICT(mean_is(illuminance[pixel], 1, 0.15));
   }
 }
 

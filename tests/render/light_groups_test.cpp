@@ -1,14 +1,9 @@
 // Layers of lights.
-#include <catch2/catch.hpp>
 #include <random>
 
 #include "photile/layered_picture.hpp"
-#include "photile/light_layers.hpp"
-#include "photile/renderer.hpp"
 #include "pictures.hpp"
 #include "render/film.hpp"
-#include "test_device.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -19,7 +14,7 @@ constexpr int neighbours = 30, samples = 2;
 
 /// A room with a lamp that is seen and eleven standing ones, of different powers and colours.
 Scene room_of_lamps() {
-  Scene scene = test::furnished_room(4);
+  Scene scene = furnished_room(4);
   while (scene.lights.size() < 12) {
     Light light = scene.lights.back();
     const auto i = static_cast<float>(scene.lights.size());
@@ -40,7 +35,7 @@ RenderResult rendered(const Scene& scene, bool glossy) {
   if (glossy) parameters.light_maps = LightMapMode::off;
   parameters.radius = glossy ? 0.4 : 0;  // one that is chosen is the same in both, too
   const Camera camera = Camera::look_at({3.6, 0.4, 1.2}, {1, 2, 1.9}, {0, 0, 1}, 1.3);
-  return render(scene, camera, test::device(), parameters);
+  return render(scene, camera, device(), parameters);
 }
 
 TEST_CASE("the layer of a group is the sum of its lights at their powers") {
@@ -173,7 +168,7 @@ TEST_CASE("a sparse film sums to the bits of a dense one, in batches of any rows
     add_to_film(dense, batch, both.dense, 0.25f);
     add_to_film(sparse, batch, both.sparse, 0.25f);
   }
-  CHECK(test::same_bits(dense, sparse));
+  CHECK(same_bits(dense, sparse));
   for (const LightLayers::Row& row : sparse.rows) {
     REQUIRE(row.first.size() == width + 1);
     for (std::size_t x = 0; x < width; ++x) {
@@ -210,7 +205,7 @@ TEST_CASE("sparse layers grow with the lights that reach a pixel, not with all")
 TEST_CASE("a batch that saw nothing leaves sparse layers black") {
   LightLayers layers(width, height, named_lights());
   add_to_film(layers, PrimaryHitBatch{}, LightTable{}, 1.0f);
-  CHECK(test::same_bits(layers, dense_layers()));
+  CHECK(same_bits(layers, dense_layers()));
 }
 
 }  // namespace

@@ -2,18 +2,11 @@
 #include "render/lobe_filter.hpp"
 
 #include <array>
-#include <catch2/catch.hpp>
-#include <cmath>
 #include <glm/glm.hpp>
 #include <random>
 #include <string>
-#include <vector>
 
-#include "photile/renderer.hpp"
 #include "pictures.hpp"
-#include "statistical_tests.hpp"
-#include "test_device.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -144,7 +137,7 @@ TEST_CASE("lobe filter: all layers have the same weights, in either form") {
 
 TEST_CASE("lobe filter: a varnished floor has less noise, and as much light") {
   Scene scene = furnished_room(3);
-  scene.materials[0] = glossy(glm::vec3(0.2f), glm::vec3(0.2f), 0.15f);
+  scene.materials[0] = glossy(0.2f, 0.2f, 0.15f);
   const Camera camera = above(2.6, 2.2, 2.0, 1.0);
   RenderParameters parameters = small_picture(20'000, 32, 24, 16);
   parameters.light_maps = LightMapMode::on;

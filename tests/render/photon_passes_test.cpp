@@ -1,20 +1,13 @@
 // Pictures of several photon passes.
 
-#include <catch2/catch.hpp>
-#include <cmath>
 #include <map>
 #include <random>
-#include <vector>
 
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "photile/renderer.hpp"
-#include "photile/scene.hpp"
 #include "pictures.hpp"
 #include "render/film.hpp"
 #include "render/pass_count.hpp"
-#include "test_device.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -39,8 +32,8 @@ RenderParameters small_parameters(int passes) {
 }
 
 RenderResult render_room(const RenderParameters& parameters) {
-  static const Scene scene = test::furnished_room(4);
-  return render(scene, test::room_camera(), test::device(), parameters);
+  static const Scene scene = furnished_room(4);
+  return render(scene, room_camera(), device(), parameters);
 }
 
 std::uint64_t host_bytes(const RenderResult& result, const std::string& stage) {
@@ -54,8 +47,8 @@ std::uint64_t host_bytes(const RenderResult& result, const std::string& stage) {
 /// 1 cd, (1 + d^2)^(-3/2) at the distance d from the point below it, over the pixels of a view of
 /// 1.6 x 1.6 m. `photons` for each pass.
 double error_after(int passes, std::uint64_t photons, int neighbours, double radius) {
-  Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 6.0f, 3);
-  scene.lights.push_back(test::point_light("lamp", {0, 0, 1}));
+  Scene scene = plate(diffuse(0.5f), 6.0f, 3);
+  scene.lights.push_back(point_light("lamp", {0, 0, 1}));
   const Camera camera =
       Camera::look_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 2.0 * std::atan(0.8 / 4.0));
   constexpr int side = 20;
@@ -67,7 +60,7 @@ double error_after(int passes, std::uint64_t photons, int neighbours, double rad
   parameters.passes = passes;
   parameters.film.width = parameters.film.height = side;
   parameters.film.samples_per_pixel = 1;
-  const LightLayers layers = render(scene, camera, test::device(), parameters).layers;
+  const LightLayers layers = render(scene, camera, device(), parameters).layers;
   double squares = 0;
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
@@ -107,8 +100,8 @@ TEST_CASE("with more passes the error falls as theory says, where the radius bou
 }
 
 TEST_CASE("one pass is the picture without passes") {
-  CHECK(test::same_bits(render_room(small_parameters(1)).layers,
-                        render_room(small_parameters(0)).layers));
+  CHECK(
+      same_bits(render_room(small_parameters(1)).layers, render_room(small_parameters(0)).layers));
 }
 
 TEST_CASE("passes share the photons and the samples of a pixel") {
@@ -129,13 +122,13 @@ TEST_CASE("photons in memory do not grow with the passes") {
     return render_room(parameters);
   };
   const RenderResult two = render_passes(2);
-  const std::uint64_t device_peak = test::device().peak_allocated_bytes();
+  const std::uint64_t device_peak = device().peak_allocated_bytes();
   const RenderResult ten = render_passes(10);
   CHECK(ten.stored_photons > 4.5 * static_cast<double>(two.stored_photons));
   // The lengths of 30,000 paths leave a deviation of 0.6% in what a pass stores.
   CHECK(static_cast<double>(host_bytes(ten, "trace photons")) <
         1.05 * static_cast<double>(host_bytes(two, "trace photons")));
-  CHECK(static_cast<double>(test::device().peak_allocated_bytes()) <
+  CHECK(static_cast<double>(device().peak_allocated_bytes()) <
         1.05 * static_cast<double>(device_peak));
 }
 

@@ -1,13 +1,22 @@
 // What the tests of pictures share.
 #pragma once
 
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
+#include <memory>
+#include <span>
+#include <vector>
 
 #include "photile/camera.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
+#include "render/hit_source.hpp"
+#include "render/render_session.hpp"
+#include "statistical_tests.hpp"
+#include "test_device.hpp"
+#include "test_scenes.hpp"
 
 namespace photile::test {
 
@@ -60,5 +69,44 @@ struct LayerMeans {
     radiance /= static_cast<double>(layer.radiance.size());
   }
 };
+
+/// Whether both layers of a furnished room with a floor of this material are those that paths see,
+/// in the mean over a place beside a block.
+inline void check_room(Scene room, const Material& floor, RenderParameters parameters,
+                       double delta) {
+  room.materials[0] = floor;
+  const Camera camera = above(2.6, 2.2, 2.0, 0.4);
+  std::vector<std::vector<double>> differences(4);
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+    parameters.seed = seed;
+    const LightLayers own = render(room, camera, device(), parameters).layers;
+    PrimaryHitParameters film = eye_rays(parameters);
+    film.samples_per_pixel = 1024;
+    const LightLayers paths = trace_paths(room, camera, film).layers;
+    for (std::size_t layer = 0; layer < 2; ++layer) {
+      const LayerMeans mean(own.layers[layer]), truth(paths.layers[layer]);
+      differences[2 * layer].push_back(mean.illuminance / truth.illuminance - 1);
+      differences[2 * layer + 1].push_back(mean.radiance / truth.radiance - 1);
+    }
+  }
+  for (const std::vector<double>& difference : differences) {
+    CHECK_VERDICT(mean_is(difference, 0.0, delta));
+  }
+}
+
+/// A picture whose rows are estimated a few at a time, as where many lights are pooled: in at least
+/// 16 parts of rows where there are as many. Each layer is pooled into itself.
+inline LightLayers picture_in_parts(const Scene& scene, const Camera& camera,
+                                    const RenderParameters& parameters) {
+  LayerMixdown itself;
+  for (const LightGroup& group : light_groups_of(scene).groups) {
+    itself.layer_of.push_back(static_cast<std::uint32_t>(itself.layers.size()));
+    itself.layers.push_back(group.name);
+    itself.scale.push_back(1.0f);
+  }
+  RenderSession session(std::make_shared<const PreparedScene>(scene), std::span(&device(), 1),
+                        parameters, Progress::none());
+  return session.render(camera_hits(camera), parameters.film, Progress::none(), &itself).layers;
+}
 
 }  // namespace photile::test

@@ -1,15 +1,12 @@
 // The table of settings, and the plan that follows from them.
 #include "render/setting.hpp"
 
-#include <catch2/catch.hpp>
 #include <limits>
 #include <set>
 
 #include "photile/limits.hpp"
 #include "pictures.hpp"
 #include "render/render_plan.hpp"
-#include "test_device.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -175,7 +172,7 @@ TEST_CASE("a picture of gigabytes is told of before anything is traced, or refus
   } progress;
   RenderParameters asked = small();
   asked.film = {limits::max_image_side, limits::max_image_side, 1};
-  const Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+  const Scene scene = closed_box(diffuse(0.5f));
   const auto line_of = [&](const auto& make) {
     progress.told.clear();
     try {

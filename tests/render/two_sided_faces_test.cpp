@@ -3,13 +3,11 @@
 // light, so that the light is even: a closed form that any wrong side of the partition breaks.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <vector>
 
 #include "photile/renderer.hpp"
 #include "photile/sensors.hpp"
-#include "scene/coincident_faces.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 #include "trace/ray_query.hpp"
@@ -45,7 +43,7 @@ class Rooms {
   /// A quad that emits what an even light lacks. Its front has the corners counter-clockwise.
   void quad(SceneBuilder& builder, const std::array<glm::dvec3, 4>& p, float reflectance,
             double lux, bool other_diagonal = false) const {
-    const std::uint32_t material = builder.add(diffuse(glm::vec3(reflectance)));
+    const std::uint32_t material = builder.add(diffuse(reflectance));
     const double area = glm::length(glm::cross(p[1] - p[0], p[3] - p[0]));
     std::uint32_t light = none;
     if (reflectance < 1) light = builder.add(area_light("side", (1 - reflectance) * lux * area));
@@ -153,9 +151,9 @@ void check_by_photons(Partition partition, bool turned, bool east_first, LightMa
   CAPTURE(static_cast<int>(partition), turned, east_first, name_of(mode));
   const Rooms rooms(turned);
   const Scene scene = rooms.scene(partition, east_first);
-  const auto layers = gather(scene, sensors_in(rooms), {.rays = 1024},
-                             std::span(&test::device(), 1), few_photons(mode))
-                          .layers;
+  const auto layers =
+      gather(scene, sensors_in(rooms), {.rays = 1024}, std::span(&device(), 1), few_photons(mode))
+          .layers;
   check_rooms(lux_of(scene, layers), 0.05);
 }
 
@@ -182,7 +180,7 @@ TEST_CASE("pictures show the side of the room that the camera is in") {
     parameters.film.width = parameters.film.height = 16;
     const glm::dvec3 eye(rooms.at({sign * 1.7, 1, 1})), middle(rooms.at({0, 1, 1}));
     const Camera camera = Camera::look_at(eye, middle, rooms.towards({0, 0, 1}), 1.0);
-    const auto layers = render(scene, camera, test::device(), parameters).layers.dense();
+    const auto layers = render(scene, camera, device(), parameters).layers.dense();
     double radiance = 0;
     for (std::size_t light = 0; light < layers.layers.size(); ++light) {
       for (const glm::vec3& value : layers.layers[light].radiance) {
@@ -241,9 +239,9 @@ TEST_CASE("the parts of a face that others hide, and those where it counts, are 
 
 TEST_CASE("behind a cutout lies the other side, from either room") {
   SceneBuilder builder;
-  Material mesh = diffuse(glm::vec3(0.3f));
+  Material mesh = diffuse(0.3f);
   mesh.opacity = 0.0f;
-  const std::uint32_t holes = builder.add(mesh), wall = builder.add(diffuse(glm::vec3(0.7f)));
+  const std::uint32_t holes = builder.add(mesh), wall = builder.add(diffuse(0.7f));
   builder.quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, holes);
   builder.quad({0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}, wall);
   builder.add(point_light("lamp", {0.5f, 0.5f, 1.0f}));

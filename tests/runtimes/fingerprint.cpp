@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <string_view>
@@ -72,30 +71,30 @@ void print_hash(const Case& test, const char* what, device::Context& context,
 /// A torus of small triangles, a plate of large ones, and a crowd of photons in one point of it:
 /// more than insertion sort takes in one cell.
 Scene torus_and_plate(std::size_t lights, bool glossy) {
-  Scene scene = test::empty_scene(lights);
+  Scene scene = empty_scene(lights);
   if (glossy) {
     scene.materials[0].specular = glm::vec3(0.04f, 0.2f, 0.6f);
     scene.materials[0].roughness = 0.3f;
   }
-  test::add_plate(scene, {-1.5f, -1.5f, -0.5f}, {3, 0, 0}, {0, 3, 0.1f}, 2);
-  test::add_torus(scene, 1.0f, 0.4f, 12, 8);
+  add_plate(scene, {-1.5f, -1.5f, -0.5f}, {3, 0, 0}, {0, 3, 0.1f}, 2);
+  add_torus(scene, 1.0f, 0.4f, 12, 8);
   return scene;
 }
 
 /// Two large triangles with photons on one side: nothing comes near the other.
 Photons photons_of(const Scene& scene, std::size_t count) {
   const std::size_t crowd = count / 4;
-  Photons photons = test::uniform_photons(scene, count - crowd, 71);
+  Photons photons = uniform_photons(scene, count - crowd, 71);
   std::mt19937_64 random(72);
   const auto [a, b, c] = scene.corners(0);
   for (std::size_t i = 0; i < crowd; ++i) {
-    test::add_photon(photons, scene, 0.5f * a + 0.3f * b + 0.2f * c, 0, random);
+    add_photon(photons, scene, 0.5f * a + 0.3f * b + 0.2f * c, 0, random);
   }
   return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
 }
 
 PrimaryHits hits_of(const Scene& scene, std::size_t count) {
-  PrimaryHits hits = test::uniform_hits(scene, count, 73);
+  PrimaryHits hits = uniform_hits(scene, count, 73);
   if (!needs_of(scene).glossy) return hits;
   std::mt19937_64 random(74);
   std::uniform_real_distribution<float> uniform(-0.5f, 0.5f);

@@ -3,7 +3,6 @@
 
 #include <catch2/catch.hpp>
 #include <cstring>
-#include <iterator>
 #include <limits>
 
 #include "file_bytes.hpp"
@@ -14,10 +13,9 @@
 #include "test_scenes.hpp"
 
 namespace photile::test {
+namespace {
 
 using Catch::Contains;
-
-namespace {
 
 const saved_maps::Settings words{"words", "of groups"};
 
@@ -35,7 +33,7 @@ struct Saved {
   explicit Saved(const Scene& scene, const RenderParameters& parameters = small())
       : file(folder.path / "maps.photile") {
     SceneRenderer renderer(
-        scene, std::span(&test::device(), 1), parameters, nullptr,
+        scene, std::span(&device(), 1), parameters, nullptr,
         [&](const TracedPhotons& prepared) { saved_maps::save(file, scene, words, prepared); });
     layers = renderer.render(scene_camera(), parameters.film).layers;
   }
@@ -51,15 +49,13 @@ struct Saved {
   LightLayers layers;
 };
 
-}  // namespace
-
 TEST_CASE("saving twice gives the same bytes") {
-  const Scene scene = test::furnished_room();
+  const Scene scene = furnished_room();
   CHECK(Saved(scene).bytes() == Saved(scene).bytes());
 }
 
 TEST_CASE("a file cut off anywhere is refused") {
-  const Scene scene = test::furnished_room();
+  const Scene scene = furnished_room();
   const Saved saved(scene);
   const std::string whole = saved.bytes();
   for (std::size_t i = 0; i < 300; ++i) {
@@ -71,7 +67,7 @@ TEST_CASE("a file cut off anywhere is refused") {
 }
 
 TEST_CASE("a file with any byte changed, or with more of them, is refused") {
-  const Scene scene = test::furnished_room();
+  const Scene scene = furnished_room();
   const Saved saved(scene);
   const std::string whole = saved.bytes();
   for (std::size_t i = 0; i < 300; ++i) {
@@ -85,8 +81,6 @@ TEST_CASE("a file with any byte changed, or with more of them, is refused") {
   saved.write(whole + "x");
   CHECK_THROWS_WITH(saved_maps::load(saved.file, scene, words), Contains("after its end"));
 }
-
-namespace {
 
 /// Light maps of one view of a room, kept with their photons, and pictures from them.
 struct SavedRoom {
@@ -109,7 +103,7 @@ struct SavedRoom {
   }
   SceneRenderer made(const RenderParameters& with, TracedPhotons* prepared,
                      const KeepPhotons& keep = {}) const {
-    return SceneRenderer(scene, std::span(&test::device(), 1), with, prepared, keep);
+    return SceneRenderer(scene, std::span(&device(), 1), with, prepared, keep);
   }
   TracedPhotons loaded() const { return saved_maps::load(file, scene, words); }
   std::vector<glm::vec3> draw(SceneRenderer& renderer, const Camera& camera, double seconds) {
@@ -133,8 +127,6 @@ struct SavedRoom {
   LightLayers layers;                   ///< of the first
   DrawnFrame drawn;
 };
-
-}  // namespace
 
 TEST_CASE("light maps are kept with their photons, and read again without an estimate") {
   SavedRoom room(GENERATE(0, 16));  // nodes by photons, and by rays
@@ -197,7 +189,7 @@ TEST_CASE("a file whose light maps are damaged, or cut off anywhere, is refused"
 }
 
 TEST_CASE("another scene, other settings and other files are told apart") {
-  const Scene scene = test::furnished_room();
+  const Scene scene = furnished_room();
   const Saved saved(scene);
   Scene moved = scene;
   moved.vertices[3].x += 1e-4f;
@@ -222,7 +214,7 @@ TEST_CASE("another scene, other settings and other files are told apart") {
 }
 
 TEST_CASE("another version or byte order is named") {
-  const Scene scene = test::furnished_room();
+  const Scene scene = furnished_room();
   const Saved saved(scene);
   std::string bytes = saved.bytes();
   std::string newer = bytes;
@@ -236,11 +228,11 @@ TEST_CASE("another version or byte order is named") {
 }
 
 TEST_CASE("a whole file whose indices lead nowhere is refused") {
-  const Scene scene = test::furnished_room();
+  const Scene scene = furnished_room();
   const TemporaryFolder folder;
   const auto file = folder.path / "maps.photile";
   TracedPhotons good;
-  const SceneRenderer renderer(scene, std::span(&test::device(), 1), small(), nullptr,
+  const SceneRenderer renderer(scene, std::span(&device(), 1), small(), nullptr,
                                [&](const TracedPhotons& prepared) { good = prepared; });
   const auto refused = [&](const TracedPhotons& bad) {
     saved_maps::save(file, scene, words, bad);
@@ -263,4 +255,5 @@ TEST_CASE("a whole file whose indices lead nowhere is refused") {
   refused(bad);
 }
 
+}  // namespace
 }  // namespace photile::test

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "photile/scene_builder.hpp"
+#include "scene/scene_queries.hpp"
 #include "scene/surface_models.hpp"
 #include "test_scenes.hpp"
 
@@ -25,8 +25,6 @@ Material thin_glass(const glm::vec3& tint = glm::vec3(1.0f)) {
 
 /// Two faces of index 1.5 reflect 0.04 each.
 constexpr double reflected = 2 * 0.04 / 1.04;
-
-}  // namespace
 
 TEST_CASE("panes are thin glass and surfaces that are partly there all over") {
   const glm::dvec3 tinted = *scene::pane_transmittance(thin_glass({0.5f, 1.0f, 0.25f}));
@@ -77,4 +75,61 @@ TEST_CASE("a pane's reflectance is told and set, and what it lets through stays"
   CHECK_FALSE(scene::reflectance_of(scene, solid));
 }
 
+// Where glass encloses a volume, and where it is a sheet.
+
+constexpr std::uint32_t pane = 1;  // material of the glass
+
+/// A room at some distance from the world's origin, and what `add` puts into it.
+template <class Add>
+std::uint32_t open_edges(bool thin, const Add& add) {
+  SceneBuilder builder;
+  builder.add(diffuse(0.5f));
+  builder.add(glass(1.5f, thin));
+  builder.add(point_light("lamp", {101, 1, 2.5f}));
+  builder.box({99, -1, 0}, {104, 4, 3}, 0, true);
+  add(builder);
+  const auto open = scene::open_edges_of_glass(builder.build());
+  CHECK(open[0] == 0);
+  return open[pane];
+}
+
+TEST_CASE("a box of glass has no open edge, whatever its number of quads") {
+  const int cells = GENERATE(1, 3);
+  CHECK(open_edges(false, [&](SceneBuilder& builder) {
+          builder.box({100, 0, 1}, {101.3f, 1, 1.7f}, pane, false, cells);
+        }) == 0);
+}
+
+TEST_CASE("a sheet of solid glass is open along its outline, and thin glass may be a sheet") {
+  const auto sheet = [](SceneBuilder& builder) {
+    builder.grid({100, 0, 1}, {1, 0, 0}, {0, 0.3f, 1}, 2, pane);
+  };
+  CHECK(open_edges(false, sheet) == 8);
+  CHECK(open_edges(true, sheet) == 0);
+}
+
+TEST_CASE("a box of glass without a lid is open along its rim") {
+  CHECK(open_edges(false, [](SceneBuilder& builder) {
+          builder.grid({100, 0, 1}, {0, 1, 0}, {1, 0, 0}, 1, pane);
+          builder.grid({100, 0, 1}, {1, 0, 0}, {0, 0, 1}, 1, pane);
+          builder.grid({100, 1, 1}, {0, 0, 1}, {1, 0, 0}, 1, pane);
+          builder.grid({100, 0, 1}, {0, 0, 1}, {0, 1, 0}, 1, pane);
+          builder.grid({101, 0, 1}, {0, 1, 0}, {0, 0, 1}, 1, pane);
+        }) == 4);
+}
+
+TEST_CASE("six quads that share neither corners nor their cuts are a closed box") {
+  // Some 15 microns apart, and cut into 1 to 6 x 6 cells each, so that no corner meets another's.
+  CHECK(open_edges(false, [](SceneBuilder& builder) {
+          const float gap = 1.5e-5f;
+          builder.grid({100, 0, 1 - gap}, {0, 1, 0}, {1, 0, 0}, 1, pane);
+          builder.grid({100, 0, 2 + gap}, {1, 0, 0}, {0, 1, 0}, 2, pane);
+          builder.grid({100, -gap, 1}, {1, 0, 0}, {0, 0, 1}, 3, pane);
+          builder.grid({100, 1 + gap, 1}, {0, 0, 1}, {1, 0, 0}, 4, pane);
+          builder.grid({100 - gap, 0, 1}, {0, 0, 1}, {0, 1, 0}, 5, pane);
+          builder.grid({101 + gap, 0, 1}, {0, 1, 0}, {0, 0, 1}, 6, pane);
+        }) == 0);
+}
+
+}  // namespace
 }  // namespace photile::test

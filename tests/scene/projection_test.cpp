@@ -1,8 +1,6 @@
 // Where the projections of a camera look, and from where a scene without a camera is seen.
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <glm/glm.hpp>
-#include <glm/gtc/constants.hpp>
 #include <glm/gtx/component_wise.hpp>
 
 #include "photile/camera.hpp"
@@ -105,7 +103,7 @@ TEST_CASE("a closed room without a camera is seen from within, whatever its size
   const glm::vec3 size = GENERATE(glm::vec3(6, 3, 4), glm::vec3(0.3f, 0.15f, 0.2f),
                                   glm::vec3(1, 1, 12), glm::vec3(12, 1, 1), glm::vec3(1, 12, 1));
   SceneBuilder builder;
-  builder.box(glm::vec3(0), size, builder.add(diffuse(glm::vec3(0.5f))), true);
+  builder.box(glm::vec3(0), size, builder.add(diffuse(0.5f)), true);
   const Camera camera = builder.build().cameras.at(0);
   const glm::dvec3 place = camera.position / glm::dvec3(size);
   CHECK(glm::compMin(place) > 0.05);
@@ -121,7 +119,7 @@ TEST_CASE("a building that is no box is seen from within its largest room, at ey
   const float turned = GENERATE(0.0f, 1.0f);
   constexpr float height = 2.7f, length = 10.0f;
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   const auto at = [&](float x, float y, float z) {
     return turned > 0 ? glm::vec3(length - x, y, length - z) : glm::vec3(x, y, z);
   };
@@ -176,7 +174,7 @@ TEST_CASE("a building that is no box is seen from within its largest room, at ey
 
 TEST_CASE("beside a stairwell the room is the one in which the point lies") {
   SceneBuilder builder;
-  const std::uint32_t paint = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t paint = builder.add(diffuse(0.5f));
   builder.box({0, 0, 0}, {8, 5.4f, 6}, paint, true);
   // The floor of the upper storey, with a hole from 3 to 5 m.
   builder.box({0, 2.6f, 0}, {3, 2.8f, 6}, paint, false);
@@ -193,7 +191,7 @@ TEST_CASE("beside a stairwell the room is the one in which the point lies") {
 TEST_CASE("a room that is open on one side is seen through it, and anything else from above") {
   const int open = GENERATE(-1, 0, 1, 2, 3);  // the wall left out: none, at +z, -z, +x, -x
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   const glm::vec3 none(0), x(4, 0, 0), y(0, 3, 0), z(0, 0, 5);
   builder.grid(none, z, x, 1, white);
   if (open < 0) {

@@ -1,11 +1,7 @@
 // Scenes made from arrays: what is filled, and what is refused.
 #include "photile/scene_builder.hpp"
 
-#include <algorithm>
-#include <catch2/catch.hpp>
-#include <cmath>
 #include <functional>
-#include <glm/gtc/constants.hpp>
 #include <limits>
 #include <numbers>
 
@@ -34,7 +30,7 @@ struct Tetrahedron {
 Texture grey_texture() { return {"grey", 1, 1, {{128, 128, 128, 255}}}; }
 
 Material textured(std::uint32_t texture) {
-  Material material = diffuse(glm::vec3(0.5f));
+  Material material = diffuse(0.5f);
   material.name = "paper";
   material.diffuse_texture = texture;
   return material;
@@ -44,7 +40,7 @@ Material textured(std::uint32_t texture) {
 
 TEST_CASE("a mesh of arrays becomes a scene with every array filled") {
   SceneBuilder builder("tetrahedron");
-  builder.add(diffuse(glm::vec3(0.5f)));
+  builder.add(diffuse(0.5f));
   const std::uint32_t red = builder.add(diffuse({0.5f, 0.1f, 0.1f}));
   const std::uint32_t lamp = builder.add(area_light("lamp", 100));
   const Tetrahedron shape;
@@ -55,7 +51,7 @@ TEST_CASE("a mesh of arrays becomes a scene with every array filled") {
   const std::vector<std::uint32_t> numbers = builder.add(mesh);
   CHECK(numbers == std::vector<std::uint32_t>{0, 1, 2, 3});
   const Scene scene = builder.build();
-  test::check_invariants(scene);
+  check_invariants(scene);
   CHECK(scene.vertices.size() == 4);
   CHECK(scene.triangle_material == materials);
   CHECK(scene.triangle_light == lights);
@@ -69,7 +65,7 @@ TEST_CASE("a mesh of arrays becomes a scene with every array filled") {
 
 TEST_CASE("triangles without area and those upon others are left out, and have no number") {
   SceneBuilder builder;
-  builder.add(diffuse(glm::vec3(0.5f)));
+  builder.add(diffuse(0.5f));
   Tetrahedron shape;
   shape.triangles = {{0, 1, 2}, {1, 1, 2}, {2, 1, 0}, {0, 1, 3}};
   CHECK(builder.add(shape.arrays()) == std::vector<std::uint32_t>{0, none, none, 1});
@@ -80,7 +76,7 @@ TEST_CASE("triangles without area and those upon others are left out, and have n
 
 TEST_CASE("coordinates and normals follow the corners, and only those that materials need stay") {
   SceneBuilder builder;
-  const std::uint32_t plain = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t plain = builder.add(diffuse(0.5f));
   builder.triangle({5, 0, 0}, {6, 0, 0}, {5, 1, 0}, plain);
   const std::uint32_t paper = builder.add(textured(builder.add(grey_texture())));
   const Tetrahedron shape;
@@ -111,7 +107,7 @@ TEST_CASE("a triangle is the same whichever corner comes first, and its winding 
   do {
     SceneBuilder builder;
     const std::array given{corners[order[0]], corners[order[1]], corners[order[2]]};
-    builder.triangle(given[0], given[1], given[2], builder.add(diffuse(glm::vec3(0.5f))));
+    builder.triangle(given[0], given[1], given[2], builder.add(diffuse(0.5f)));
     const Scene scene = builder.build();
     CHECK(scene.corners(0) == std::array<glm::vec3, 3>{{{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}});
     CHECK(face_normal(scene, oriented(0, scene.front_side[0])).z ==
@@ -128,11 +124,11 @@ TEST_CASE("normals of the triangles stay for materials that ask for a frame, ben
     to.add({.vertices = corners,
             .triangles = triangle,
             .normals = normals,
-            .material = to.add(diffuse(glm::vec3(0.5f)))});
+            .material = to.add(diffuse(0.5f))});
   };
   add_triangle(builder);
   CHECK(builder.build().corner_normal.empty());
-  builder.add(mirror(glm::vec3(0.9f)));
+  builder.add(mirror(0.9f));
   CHECK(builder.build().corner_normal.size() == 1);
   normals[0] = {1, 0, 1};
   SceneBuilder bent;
@@ -147,7 +143,7 @@ TEST_CASE("a texture is opaque where no texel lets light through") {
 
 TEST_CASE("lights get the flux that the closed forms say") {
   SceneBuilder builder;
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.box(glm::vec3(-1), glm::vec3(1), white, true);
   const double disc = glm::pi<double>() * 3;  // of the sphere through the corners, squared metres
   Light sun;
@@ -173,7 +169,7 @@ TEST_CASE("lights get the flux that the closed forms say") {
 
 TEST_CASE("a textured area light emits its power, where its texture is bright") {
   SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   Light lamp = area_light("window", 50);
   lamp.emission_texture = builder.add(grey_texture());
   lamp.color = {1, 0, 0};
@@ -197,7 +193,7 @@ TEST_CASE("a textured area light emits its power, where its texture is bright") 
 
 TEST_CASE("what is wrong with a mesh or a light is said in one line that names the scene") {
   SceneBuilder builder("kitchen");
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   const std::uint32_t paper = builder.add(textured(builder.add(grey_texture())));
   const std::uint32_t bulb = builder.add(point_light("bulb", {0, 0, 1}));
   Tetrahedron shape;
@@ -255,7 +251,7 @@ TEST_CASE("what is wrong with a mesh or a light is said in one line that names t
 TEST_CASE("a scene without triangles, or a lamp without any, is refused") {
   SceneBuilder builder("empty");
   CHECK_THROWS_WITH(builder.build(), "empty: no triangle has an area; add a mesh");
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.box(glm::vec3(0), glm::vec3(1), white, true);
   builder.add(area_light("panel"));
   CHECK_THROWS_WITH(builder.build(), Contains("'panel' is an area light without triangles"));
@@ -263,7 +259,7 @@ TEST_CASE("a scene without triangles, or a lamp without any, is refused") {
 
 TEST_CASE("a scene that was filled wrongly by hand is an error of every stage, and no crash") {
   const auto broken = [](const std::function<void(Scene&)>& change) {
-    Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+    Scene scene = closed_box(diffuse(0.5f));
     change(scene);
     return scene;
   };
@@ -308,7 +304,7 @@ TEST_CASE("a scene that was filled wrongly by hand is an error of every stage, a
 }
 
 TEST_CASE("photons that do not fit the scene are an error of the maps, and no crash") {
-  const Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+  const Scene scene = closed_box(diffuse(0.5f));
   const NeighbourGroups groups = find_neighbour_groups(scene, {.radius = 0.1});
   const Photons whole = trace_photons(RayScene(scene), {.emitted_photons = 100}).photons;
   const auto refuse = [&](const std::function<void(Photons&)>& change, const char* reason) {
@@ -323,7 +319,7 @@ TEST_CASE("photons that do not fit the scene are an error of the maps, and no cr
          "order of their triangles");
   refuse([](Photons& p) { p.position[7].x = nan; }, "NaN or infinite");
   CHECK_THROWS_WITH(
-      PhotonMaps(device(), plate(diffuse(glm::vec3(0.5f)), 1), Photons{}, groups, {.radius = 0.1}),
+      PhotonMaps(device(), plate(diffuse(0.5f), 1), Photons{}, groups, {.radius = 0.1}),
       Contains("plate"));
 }
 

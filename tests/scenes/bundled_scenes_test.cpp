@@ -1,13 +1,10 @@
 // The scenes under scenes/ hold what scenes/README.md says.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
 #include <random>
-#include <string>
 
 #include "photile/load_scene.hpp"
 #include "photile/scene.hpp"
@@ -17,7 +14,7 @@
 namespace photile::test {
 namespace {
 
-const std::filesystem::path folder = test::source_folder() / "scenes";
+const std::filesystem::path folder = source_folder() / "scenes";
 const std::filesystem::path cornell_obj = folder / "cornell-box/cornell-box.obj";
 const std::filesystem::path cornell_gltf = folder / "cornell-box/cornell-box.gltf";
 const std::filesystem::path cornell_specular = folder / "cornell-box/cornell-box-specular.gltf";

@@ -23,7 +23,7 @@ class GatheringPhotons {
         plan_(gathering(parameters), rays, HitsAsk::pictures, Progress::none()),
         passes_(rays, devices, plan_, costs_),
         photons_(passes_.next(nullptr, nullptr, Progress::none())),
-        layer_powers_(photile::light::layer_powers(rays.scene())) {}
+        layer_powers_(light::layer_powers(rays.scene())) {}
   GatheringPhotons(const GatheringPhotons&) = delete;
   GatheringPhotons& operator=(const GatheringPhotons&) = delete;
 

@@ -19,9 +19,9 @@ inline SceneBuilder ceiling_and_floor() {
   SceneBuilder builder("ceiling");
   builder.grid({-ceiling_half_side, -ceiling_half_side, ceiling_height},
                {0, 2 * ceiling_half_side, 0}, {2 * ceiling_half_side, 0, 0}, 1,
-               builder.add(diffuse(glm::vec3(ceiling_albedo))));
+               builder.add(diffuse(ceiling_albedo)));
   builder.grid({-ceiling_half_side, -ceiling_half_side, 0}, {2 * ceiling_half_side, 0, 0},
-               {0, 2 * ceiling_half_side, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
+               {0, 2 * ceiling_half_side, 0}, 1, builder.add(diffuse(0.0f)));
   return builder;
 }
 

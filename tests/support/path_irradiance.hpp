@@ -5,6 +5,7 @@
 
 #include "photile/ray_scene.hpp"
 #include "render/path_estimate.hpp"
+#include "statistical_tests.hpp"
 #include "trace/sensors.hpp"
 
 namespace photile::test {
@@ -41,11 +42,8 @@ inline PathMeans path_means(const Scene& scene, const std::vector<Sensor>& senso
 /// The irradiance of the only light for seeds 1 to 16.
 inline std::vector<double> path_irradiances(const Scene& scene, const std::vector<Sensor>& sensors,
                                             std::size_t paths) {
-  std::vector<double> values;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
-    values.push_back(path_means(scene, sensors, seed, paths).irradiance.at(0));
-  }
-  return values;
+  return of_seeds(
+      [&](std::uint64_t seed) { return path_means(scene, sensors, seed, paths).irradiance.at(0); });
 }
 
 }  // namespace photile::test

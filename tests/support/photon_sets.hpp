@@ -55,6 +55,17 @@ inline void add_plate(Scene& scene, glm::vec3 corner, glm::vec3 u, glm::vec3 v, 
   }
 }
 
+/// What add_plate takes.
+struct Plate {
+  glm::vec3 corner, u, v;
+  int cells;
+};
+inline Scene scene_of_plates(const std::vector<Plate>& plates, std::size_t light_count = 1) {
+  Scene scene = empty_scene(light_count);
+  for (const Plate& plate : plates) add_plate(scene, plate.corner, plate.u, plate.v, plate.cells);
+  return scene;
+}
+
 /// A torus of rings x segments quads around the z axis.
 inline void add_torus(Scene& scene, float major, float minor, int rings, int segments) {
   const auto at = [&](int i, int j) {
@@ -118,6 +129,14 @@ inline Photons uniform_photons(const Scene& scene, std::size_t count, std::uint6
                random);
   }
   return sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
+}
+
+/// A hit on surface that reflects half of the light.
+inline void add_grey_hit(PrimaryHits& hits, const glm::vec3& position,
+                         std::uint32_t oriented_face) {
+  hits.position.push_back(position);
+  hits.oriented_face.push_back(oriented_face);
+  hits.diffuse_albedo.emplace_back(0.5f);
 }
 
 /// Hits uniform over the scene, grouped by oriented face as the estimator wants them.

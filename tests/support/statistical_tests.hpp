@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,14 @@ struct Verdict {
   bool passed;
   std::string message;
 };
+
+/// What `value_of` gives of the seeds 1 to 16.
+template <class Value>
+std::vector<double> of_seeds(Value&& value_of) {
+  std::vector<double> values;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) values.push_back(value_of(seed));
+  return values;
+}
 
 /// Whether the mean of 16 independent values is `truth`: two-sided Student t test with error
 /// probability 1e-6. Throws when the values scatter too much for a deviation of `delta` to be found

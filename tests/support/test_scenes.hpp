@@ -21,11 +21,17 @@ inline Material diffuse(const glm::vec3& albedo) {
   return material;
 }
 
+inline Material diffuse(float albedo) { return diffuse(glm::vec3(albedo)); }
+
 inline Material glossy(const glm::vec3& albedo, const glm::vec3& specular, float roughness) {
   Material material = diffuse(albedo);
   material.specular = specular;
   material.roughness = roughness;
   return material;
+}
+
+inline Material glossy(float albedo, float specular, float roughness) {
+  return glossy(glm::vec3(albedo), glm::vec3(specular), roughness);
 }
 
 inline Material mirror(const glm::vec3& reflectance) {
@@ -34,6 +40,8 @@ inline Material mirror(const glm::vec3& reflectance) {
   material.specular = reflectance;
   return material;
 }
+
+inline Material mirror(float reflectance) { return mirror(glm::vec3(reflectance)); }
 
 inline Material glass(float index_of_refraction, bool thin = false) {
   Material material;
@@ -109,10 +117,10 @@ inline std::set<std::uint32_t> triangles_in_one_place(const Scene& scene) {
 /// lamp without size and two blocks. 12 cells^2 triangles in the walls.
 inline Scene furnished_room(int cells = 1) {
   SceneBuilder builder("furnished room");
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.7f)));
+  const std::uint32_t white = builder.add(diffuse(0.7f));
   const std::uint32_t red = builder.add(diffuse({0.6f, 0.1f, 0.1f}));
   const std::uint32_t green = builder.add(diffuse({0.1f, 0.5f, 0.1f}));
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   const std::uint32_t ceiling = builder.add(area_light("ceiling", 2000.0));
   builder.add(point_light("standing lamp", {3.2f, 2.4f, 1.4f}, 400.0));
 

@@ -19,7 +19,7 @@ std::vector<float> values_of(const std::string& name, const std::string& call,
                 ".clh\"\n__kernel void values(__global const float* x, __global const float* y,\n"
                 "__global float* value) { const size_t i = get_global_id(0); vstore8(" +
                 call + ", i, value); }\n");
-  device::Context& context = device::context_of(test::device());
+  device::Context& context = device::context_of(device());
   const auto x_buffer = context.upload(std::span<const float>(x), "x");
   const auto y_buffer = context.upload(std::span<const float>(y), "y");
   const auto value_buffer = context.allocate<float>(x.size(), "values");

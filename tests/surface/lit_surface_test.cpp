@@ -1,11 +1,6 @@
 // Which parts of a surface light reaches.
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <map>
-#include <random>
-#include <set>
 #include <utility>
 
 #include "geometry/disjoint_sets.hpp"
@@ -51,10 +46,10 @@ TEST_CASE("ten photons on a half tell that a half of it is dark, by chance one t
   const Isosceles whole{glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)};
   const auto [bright, dim] = halves_of(whole);
   const auto [lit, dark] = halves_of(dim);
-  Scene scene = test::empty_scene();
-  test::add_triangle(scene, whole[0], whole[1], whole[2]);
+  Scene scene = empty_scene();
+  add_triangle(scene, whole[0], whole[1], whole[2]);
   const glm::vec3 above(0, 0, 1);
-  test::add_triangle(scene, whole[0] + above, whole[1] + above, whole[2] + above);
+  add_triangle(scene, whole[0] + above, whole[1] + above, whole[2] + above);
   const surface::SurfaceMesh mesh(scene);
   for (const std::uint32_t on_lit : {9u, 10u}) {
     Photons photons;
@@ -76,20 +71,19 @@ TEST_CASE("ten photons on a half tell that a half of it is dark, by chance one t
 }
 
 TEST_CASE("of hundreds of unlit regions the one is found that a hit lies in") {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {2, 0.3f, 0.1f}, {0.2f, 2, 0.7f}, 1);
-  const Photons everywhere = test::uniform_photons(scene, 100'000, 67, false);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {2, 0.3f, 0.1f}, {0.2f, 2, 0.7f}, 1}});
+  const Photons everywhere = uniform_photons(scene, 100'000, 67, false);
   Photons photons;
   std::mt19937_64 random(68);
   for (std::size_t i = 0; i < everywhere.size(); ++i) {
     const glm::vec3& p = everywhere.position[i];
     const bool in_a_square = std::sin(20 * p.x) > 0 && std::sin(20 * p.y) > 0;
-    if (in_a_square) test::add_photon(photons, scene, p, everywhere.oriented_face[i], random);
+    if (in_a_square) add_photon(photons, scene, p, everywhere.oriented_face[i], random);
   }
   photons = sort_by_oriented_face(std::move(photons), 2 * scene.triangle_count());
   const SurfaceIndex index = index_surface(scene, photons, 0.05, 60);
   REQUIRE(index.unlit_regions.size() >= 200);
-  const PrimaryHits hits = test::uniform_hits(scene, 2000, 69, false);
+  const PrimaryHits hits = uniform_hits(scene, 2000, 69, false);
   std::size_t dark = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const std::uint32_t own = hits.oriented_face[i];
@@ -123,8 +117,7 @@ TEST_CASE("of hundreds of unlit regions the one is found that a hit lies in") {
 /// The unlit sides of a plate of 200 equal triangles, where so many photons landed on the front of
 /// each triangle, and none on the first ones.
 std::vector<std::uint32_t> unlit_sides(std::uint32_t on_each, std::uint32_t empty) {
-  Scene scene = test::empty_scene();
-  test::add_plate(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 10);
+  Scene scene = scene_of_plates({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 10}});
   const surface::SurfaceMesh mesh(scene);
   std::vector<std::uint32_t> landed(2 * scene.triangle_count(), 0);
   for (std::uint32_t t = empty; t < scene.triangle_count(); ++t) landed[oriented(t, 0)] = on_each;
@@ -153,8 +146,8 @@ constexpr double radius = 0.1;
 
 /// A floor of 1 x 1 m under tiles of 0.1 m, `side` wide and `thickness` above it.
 Scene tiled_floor(float side, float thickness) {
-  test::SceneBuilder builder;
-  const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
   for (int i = 0; i < 10; ++i) {
     for (int j = 0; j < 10; ++j) {
@@ -188,8 +181,8 @@ TEST_CASE("a floor that is covered by less than half counts as open") {
 
 TEST_CASE("what is higher than a fifth of the radius, or lit from below, covers nothing") {
   const auto open_fraction = [](float height, bool lit_below) {
-    test::SceneBuilder room;
-    const std::uint32_t white = room.add(test::diffuse(glm::vec3(0.5f)));
+    SceneBuilder room;
+    const std::uint32_t white = room.add(diffuse(0.5f));
     room.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
     room.grid({0, 0, height}, {1, 0, 0}, {0, 1, 0}, 1, white);
     const Scene scene = room.build();
@@ -287,7 +280,7 @@ std::set<std::uint32_t> sheets_facing_up(const Scene& scene) {
 
 TEST_CASE("a plate of any triangulation has two components, its sides") {
   for (const int cells : {1, 5}) {
-    const Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 1.0f, cells);
+    const Scene scene = plate(diffuse(0.5f), 1.0f, cells);
     const surface::SmoothComponents components = components_of(scene);
     CHECK(components.count == 2);
     CHECK(sheets_facing_up(scene).size() == 1);
@@ -295,17 +288,16 @@ TEST_CASE("a plate of any triangulation has two components, its sides") {
 }
 
 TEST_CASE("a box has twelve components, and two where its edges do not part them") {
-  test::SceneBuilder builder;
-  builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(test::diffuse(glm::vec3(0.5f))), false,
-              3);
+  SceneBuilder builder;
+  builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(diffuse(0.5f)), false, 3);
   const Scene scene = builder.build();
   CHECK(components_of(scene, 60).count == 12);
   CHECK(components_of(scene, 91).count == 2);
 }
 
 TEST_CASE("components of a curved surface follow it round, however its triangles are wound") {
-  Scene scene = test::empty_scene();
-  test::add_torus(scene, 1.0f, 0.4f, 24, 16);
+  Scene scene = empty_scene();
+  add_torus(scene, 1.0f, 0.4f, 24, 16);
   CHECK(components_of(scene).count == 2);
   // Corners in another order turn a triangle's sides over.
   for (std::size_t t = 0; t < scene.triangle_count(); t += 3) {
@@ -317,7 +309,7 @@ TEST_CASE("components of a curved surface follow it round, however its triangles
 /// Triangles round one edge, at random or at even angles, half of them wound the other way.
 Scene fan(int count, bool random) {
   std::mt19937 engine(3);
-  Scene scene = test::empty_scene();
+  Scene scene = empty_scene();
   for (int i = 0; i < count; ++i) {
     const double share =
         random ? std::uniform_real_distribution<double>(0, 1)(engine) : double(i) / count;
@@ -325,9 +317,9 @@ Scene fan(int count, bool random) {
     const glm::vec3 tip(std::cos(turn), std::sin(turn), 0.1);
     const glm::vec3 low(0, 0, -1), high(0, 0, 1);
     if (engine() % 2 == 0) {
-      test::add_triangle(scene, low, high, tip);
+      add_triangle(scene, low, high, tip);
     } else {
-      test::add_triangle(scene, high, low, tip);
+      add_triangle(scene, high, low, tip);
     }
   }
   return scene;
@@ -369,8 +361,8 @@ TEST_CASE("the blades of a fan are joined as by all pairs, of which few are look
 }
 
 TEST_CASE("coplanar pieces that touch make one component without a common corner") {
-  test::SceneBuilder builder;
-  const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
   builder.grid({1, 0.2f, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);  // as tiles are laid
   CHECK(sheets_facing_up(builder.build()).size() == 1);
@@ -381,8 +373,8 @@ TEST_CASE("coplanar pieces that touch make one component without a common corner
 TEST_CASE("wherever they lie, pieces connect along a longer edge, and not beyond its end") {
   for (const float shift : {-3.0f, 0.0f, 3.0f}) {
     const auto components_beside = [&](float from, float to) {
-      test::SceneBuilder builder;
-      const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
+      SceneBuilder builder;
+      const std::uint32_t white = builder.add(diffuse(0.5f));
       builder.grid({0, shift, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
       builder.grid({1, shift + from, 0}, {1, 0, 0}, {0, to - from, 0}, 1, white);
       return sheets_facing_up(builder.build()).size();
@@ -394,27 +386,27 @@ TEST_CASE("wherever they lie, pieces connect along a longer edge, and not beyond
 }
 
 TEST_CASE("pieces that overlap in a plane stay apart") {
-  test::SceneBuilder builder;
-  const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(0.5f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 0.5f, 0}, 1, white);  // from the same edge on
   CHECK(sheets_facing_up(builder.build()).size() == 2);
 }
 
 TEST_CASE("mirrors are no part of the components of what is round them") {
-  test::SceneBuilder builder;
-  const std::uint32_t white = builder.add(test::diffuse(glm::vec3(0.5f)));
-  const std::uint32_t silver = builder.add(test::mirror(glm::vec3(0.9f)));
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(0.5f));
+  const std::uint32_t silver = builder.add(mirror(0.9f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, white);
   builder.grid({1, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, silver);
   CHECK(sheets_facing_up(builder.build()).size() == 2);
 }
 
 TEST_CASE("of coincident triangles the first stands for all, on the side that looks as they do") {
-  Scene scene = test::empty_scene();
-  test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-  test::add_triangle(scene, {0, 0, 0}, {0, 1, 0}, {1, 0, 0});  // wound the other way
-  test::add_triangle(scene, {1, 0, 0}, {0, 1, 0}, {0, 0, 0});
+  Scene scene = empty_scene();
+  add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  add_triangle(scene, {0, 0, 0}, {0, 1, 0}, {1, 0, 0});  // wound the other way
+  add_triangle(scene, {1, 0, 0}, {0, 1, 0}, {0, 0, 0});
   const surface::SurfaceMesh mesh(scene);
   CHECK(mesh.original == std::vector<std::uint32_t>{0, 1, 1, 0, 0, 1});
 }
@@ -430,7 +422,7 @@ double border_length(const surface::CoplanarRegions& regions) {
 
 TEST_CASE("a plate is one region, bounded by its outline, for any triangulation") {
   for (const int cells : {1, 3, 20}) {
-    const Scene scene = test::plate(test::diffuse(glm::vec3(0.5f)), 1.0f, cells);
+    const Scene scene = plate(diffuse(0.5f), 1.0f, cells);
     const surface::CoplanarRegions regions =
         surface::find_coplanar_regions(surface::SurfaceMesh(scene), 0.1);
     const std::set<std::uint32_t> numbers(regions.of_triangle.begin(), regions.of_triangle.end());
@@ -447,9 +439,8 @@ TEST_CASE("a plate is one region, bounded by its outline, for any triangulation"
 }
 
 TEST_CASE("faces of a box bound each other; small ones are looked at triangle by triangle") {
-  test::SceneBuilder builder;
-  builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(test::diffuse(glm::vec3(0.5f))), false,
-              4);
+  SceneBuilder builder;
+  builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(diffuse(0.5f)), false, 4);
   const Scene scene = builder.build();
   const surface::SurfaceMesh mesh(scene);
   const surface::CoplanarRegions large = surface::find_coplanar_regions(mesh, 0.1);
@@ -460,18 +451,18 @@ TEST_CASE("faces of a box bound each other; small ones are looked at triangle by
 }
 
 TEST_CASE("a curved surface has no regions, and slow curvature adds up") {
-  Scene scene = test::empty_scene();
-  test::add_torus(scene, 1.0f, 0.4f, 24, 16);
+  Scene scene = empty_scene();
+  add_torus(scene, 1.0f, 0.4f, 24, 16);
   CHECK(surface::find_coplanar_regions(surface::SurfaceMesh(scene), 0.3).borders.empty());
   // A cylinder of 1 km: neighbouring strips of 2 cm fold by 2e-5 rad, as flat as rounding leaves a
   // plane. Over its 40 m the normals turn by 0.04 rad.
-  Scene slow = test::empty_scene();
+  Scene slow = empty_scene();
   const auto at = [](int i) { return glm::vec3(0.02f * static_cast<float>(i), 0.0f, 0.0f); };
   const auto height = [](glm::vec3 p) { return glm::vec3(p.x, p.y, p.x * p.x / 2000.0f); };
   for (int i = 0; i < 2000; ++i) {
     const glm::vec3 up(0, 1, 0), a = height(at(i)), b = height(at(i + 1));
-    test::add_triangle(slow, a, b, b + up);
-    test::add_triangle(slow, a, b + up, a + up);
+    add_triangle(slow, a, b, b + up);
+    add_triangle(slow, a, b + up, a + up);
   }
   const surface::CoplanarRegions regions =
       surface::find_coplanar_regions(surface::SurfaceMesh(slow), 0.1);
@@ -487,10 +478,10 @@ TEST_CASE("a curved surface has no regions, and slow curvature adds up") {
 }
 
 TEST_CASE("an edge of three triangles in a plane bounds all of them") {
-  Scene scene = test::empty_scene();
-  test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-  test::add_triangle(scene, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
-  test::add_triangle(scene, {1, 0, 0}, {2, 2, 0}, {0, 1, 0});  // overlaps the second
+  Scene scene = empty_scene();
+  add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  add_triangle(scene, {1, 0, 0}, {1, 1, 0}, {0, 1, 0});
+  add_triangle(scene, {1, 0, 0}, {2, 2, 0}, {0, 1, 0});  // overlaps the second
   const surface::CoplanarRegions regions =
       surface::find_coplanar_regions(surface::SurfaceMesh(scene), 0.1);
   CHECK(std::set<std::uint32_t>(regions.plane.begin(), regions.plane.end()).size() == 3);

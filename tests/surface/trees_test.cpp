@@ -1,8 +1,6 @@
 // Trees over surfaces and planes.
 #include <catch2/catch.hpp>
 #include <functional>
-#include <random>
-#include <set>
 
 #include "photon_sets.hpp"
 #include "surface/coplanar_regions.hpp"
@@ -31,12 +29,12 @@ std::set<std::uint32_t> others_within(const surface::SurfaceMesh& mesh,
 }
 
 TEST_CASE("triangles of other planes are all found, and none of the own") {
-  test::SceneBuilder builder;
-  const std::uint32_t material = builder.add(test::diffuse(glm::vec3(0.5f)));
+  SceneBuilder builder;
+  const std::uint32_t material = builder.add(diffuse(0.5f));
   builder.box(glm::vec3(0.0f), glm::vec3(1.0f), material, true, 12);
   builder.box(glm::vec3(0.2f, 0.2f, 0.01f), glm::vec3(0.5f), material, false, 5);
   Scene scene = builder.build();
-  test::add_torus(scene, 0.3f, 0.1f, 12, 8);
+  add_torus(scene, 0.3f, 0.1f, 12, 8);
   const surface::SurfaceMesh mesh(scene);
   for (const double radius : {0.02, 0.15}) {
     const surface::CoplanarRegions regions = surface::find_coplanar_regions(mesh, radius);
@@ -63,9 +61,9 @@ TEST_CASE("triangles of other planes are all found, and none of the own") {
 }
 
 TEST_CASE("of two triangles at an angle each finds the other") {
-  Scene scene = test::empty_scene();
-  test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-  test::add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
+  Scene scene = empty_scene();
+  add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  add_triangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
   const surface::SurfaceMesh mesh(scene);
   const surface::CoplanarRegions regions = surface::find_coplanar_regions(mesh, 0.1);
   const surface::PlaneTree planes(mesh, regions);
@@ -81,7 +79,7 @@ TEST_CASE("of two triangles at an angle each finds the other") {
 }
 
 TEST_CASE("a search for triangles of other planes ends where it is told to") {
-  const Scene scene = test::closed_box(test::diffuse(glm::vec3(0.5f)), 4);
+  const Scene scene = closed_box(diffuse(0.5f), 4);
   const surface::SurfaceMesh mesh(scene);
   const surface::CoplanarRegions regions = surface::find_coplanar_regions(mesh, 0.1);
   const surface::PlaneTree planes(mesh, regions);

@@ -2,7 +2,6 @@
 #include "photile/device/bsdf.h"
 
 #include <catch2/catch.hpp>
-#include <glm/glm.hpp>
 
 #include "statistical_tests.hpp"
 #include "test_scenes.hpp"
@@ -11,7 +10,7 @@
 
 namespace photile::test {
 
-using namespace photile::trace;
+using namespace trace;
 
 namespace {
 
@@ -199,7 +198,7 @@ TEST_CASE("Without a coat the opaque BSDF is Lambertian") {
 
 TEST_CASE("Rays follow a lobe by its part of what is seen, and by what it reflects") {
   const auto rays_of = [](float albedo, float f0, float alpha) {
-    const Scene scene = plate(glossy(glm::vec3(albedo), glm::vec3(f0), alpha), 2);
+    const Scene scene = plate(glossy(albedo, f0, alpha), 2);
     const glm::vec3 direction(0, 0, -1);
     return OpaqueBsdf(scene, surface_hit(scene, {0, 0.3f, 0.3f}, direction), direction).lobe_rays();
   };
@@ -213,10 +212,8 @@ TEST_CASE("Rays follow a lobe by its part of what is seen, and by what it reflec
 
 TEST_CASE("Directions are drawn with the density that the opaque BSDF claims") {
   constexpr int samples = 200'000, rings = 16, sectors = 16, fine = 24;
-  for (const Material& material :
-       {diffuse(glm::vec3(0.6f)), glossy(glm::vec3(0.5f), glm::vec3(0.04f), 0.3f),
-        glossy(glm::vec3(0.0f), glm::vec3(0.9f), 0.4f),
-        glossy(glm::vec3(0.3f), glm::vec3(0.2f), 1.0f)})
+  for (const Material& material : {diffuse(0.6f), glossy(0.5f, 0.04f, 0.3f),
+                                   glossy(0.0f, 0.9f, 0.4f), glossy(0.3f, 0.2f, 1.0f)})
     for (const float tilt : {0.0f, 1.5f}) {
       const Scene scene = plate(material, 2);
       const glm::vec3 direction = glm::normalize(glm::vec3(tilt, 0.2f * tilt, -1));

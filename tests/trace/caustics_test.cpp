@@ -1,6 +1,5 @@
 // Photons that are aimed at mirrors carry the flux that falls on them, against closed forms.
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -9,7 +8,6 @@
 #include "photile/statistics.hpp"
 #include "statistical_tests.hpp"
 #include "suns.hpp"
-#include "test_scenes.hpp"
 #include "trace/emission_sampling.hpp"
 #include "trace/sampling.hpp"
 #include "trace/targets.hpp"
@@ -27,9 +25,9 @@ constexpr float mirror_half_side = 0.3f;  ///< of mirrors, metres
 /// bounding spheres look through each other from most places.
 SceneBuilder box_of_mirrors(float reflectance = 0.0f) {
   SceneBuilder builder;
-  const std::uint32_t walls = builder.add(diffuse(glm::vec3(reflectance)));
+  const std::uint32_t walls = builder.add(diffuse(reflectance));
   builder.box(glm::vec3(-1.0f), glm::vec3(1.0f), walls, true, 2);
-  const std::uint32_t glass = builder.add(mirror(glm::vec3(1.0f)));
+  const std::uint32_t glass = builder.add(mirror(1.0f));
   for (const float z : {-0.65f, 0.05f}) {
     builder.grid({0.9f, -mirror_half_side, z}, {0, 0, 2 * mirror_half_side},
                  {0, 2 * mirror_half_side, 0}, 1, glass);
@@ -57,16 +55,14 @@ double solid_angle_of_mirrors() {
 /// Luminous flux of the caustics of 16 seeds, where the lamp emits 1.
 std::vector<double> flux_of_caustics(const Scene& scene, std::uint64_t paths) {
   const RayScene rays(scene);
-  std::vector<double> sums;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+  return of_seeds([&](std::uint64_t seed) {
     const Photons caustics =
         trace_photons(rays, {.emitted_photons = paths, .seed = seed, .keep_caustics = true})
             .caustics;
     double sum = 0;
     for (const glm::vec3& flux : caustics.flux) sum += luminance(glm::dvec3(flux));
-    sums.push_back(sum);
-  }
-  return sums;
+    return sum;
+  });
 }
 
 }  // namespace
@@ -92,7 +88,7 @@ TEST_CASE("Caustics of a spot light carry the flux that its cone sends to the mi
 TEST_CASE("Caustics of a lamp with an area carry the flux that falls on the mirrors") {
   const bool two_sided = GENERATE(false, true);
   SceneBuilder builder = box_of_mirrors();
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   builder.grid({-0.5f, 0, -0.25f}, {1.0f, 0, 0}, {0, 0, 0.5f}, 3, black,
                builder.add(area_light("lamp", 1, two_sided)));  // its front looks down
   // The lamp hides no mirror from itself; light that one mirror sends to another counts once.
@@ -121,8 +117,8 @@ TEST_CASE("Caustics of a lamp with an area carry the flux that falls on the mirr
 TEST_CASE("Caustics of a sun carry the flux that crosses the mirror") {
   const float diameter = GENERATE(0.0f, 0.01f);
   SceneBuilder builder;
-  builder.grid({-4, -2, 0}, {8, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
-  builder.grid({0, -0.5f, 0.1f}, {0, 0, 1}, {0, 1, 0}, 1, builder.add(mirror(glm::vec3(1.0f))));
+  builder.grid({-4, -2, 0}, {8, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(0.0f)));
+  builder.grid({0, -0.5f, 0.1f}, {0, 0, 1}, {0, 1, 0}, 1, builder.add(mirror(1.0f)));
   const Light sun = sun_along(glm::normalize(glm::vec3(1, 0, -1)), diameter);
   builder.add_distant(sun, 1.0);
   const Scene scene = builder.build();
@@ -133,8 +129,8 @@ TEST_CASE("Caustics of a sun carry the flux that crosses the mirror") {
 
 TEST_CASE("Photons of a caustic lie more evenly than by chance") {
   SceneBuilder builder;
-  builder.grid({-4, -4, 0}, {8, 0, 0}, {0, 8, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
-  builder.grid({-0.5f, -0.5f, 2}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(mirror(glm::vec3(1.0f))));
+  builder.grid({-4, -4, 0}, {8, 0, 0}, {0, 8, 0}, 1, builder.add(diffuse(0.0f)));
+  builder.grid({-0.5f, -0.5f, 2}, {0, 1, 0}, {1, 0, 0}, 1, builder.add(mirror(1.0f)));
   builder.add(point_light("bulb", {0, 0, 1}));
   const Scene scene = builder.build();
   const RayScene rays(scene);
@@ -191,7 +187,7 @@ TEST_CASE("Aims: directions have the densities that are told, over all that targ
 }
 
 TEST_CASE("Scenes without mirrors and glass have no targets and no caustics") {
-  const Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+  const Scene scene = closed_box(diffuse(0.5f));
   CHECK(trace::specular_targets(scene).empty());
   const PhotonTracerResult traced =
       trace_photons(RayScene(scene), {.emitted_photons = 1000, .keep_caustics = true});

@@ -7,14 +7,11 @@
 
 #include "path_irradiance.hpp"
 #include "photile/photons.hpp"
-#include "photile/ray_scene.hpp"
-#include "statistical_tests.hpp"
 #include "suns.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 
-using namespace photile::trace;
+using namespace trace;
 
 namespace {
 
@@ -64,10 +61,7 @@ double flux_from_above(const Scene& scene, std::uint64_t seed, std::uint64_t pat
 }
 
 std::vector<double> fluxes_from_above(const Scene& scene, std::uint64_t paths) {
-  std::vector<double> fluxes;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed)
-    fluxes.push_back(flux_from_above(scene, seed, paths));
-  return fluxes;
+  return of_seeds([&](std::uint64_t seed) { return flux_from_above(scene, seed, paths); });
 }
 
 double disc_of(const Scene& scene) { return pi * std::pow(bounding_sphere(scene).radius, 2); }
@@ -219,7 +213,7 @@ TEST_CASE("paths of an even environment give pi L, of a half bright one pi L or 
 }
 
 TEST_CASE("in an even environment a white corner vanishes: pi L everywhere", "[environment]") {
-  const Scene scene = with_environment(corner(diffuse(glm::vec3(1.0f))), even_map({1, 3, 2}));
+  const Scene scene = with_environment(corner(diffuse(1.0f)), even_map({1, 3, 2}));
   const double one = 1 / (4 * disc_of(scene));
   for (const double near : {0.02, 1.0}) {
     CAPTURE(near);
@@ -276,7 +270,7 @@ TEST_CASE("a sun gives E cos by paths and photons, also through a pane", "[sun]"
 
 TEST_CASE("eyes see an environment and a sun directly and in a mirror", "[environment]") {
   const glm::vec3 blue(1, 2, 4);
-  Scene scene = with_environment(plate(mirror(glm::vec3(0.5f)), 20), even_map(blue));
+  Scene scene = with_environment(plate(mirror(0.5f), 20), even_map(blue));
   scene = with_sun(scene, {0, 0, 1}, 0.5f);
   const RayScene rays(scene);
   const PrimaryHitParameters film{.width = 1, .height = 1, .samples_per_pixel = 1};

@@ -3,11 +3,9 @@
 #include "trace/hot_spots.hpp"
 
 #include <catch2/catch.hpp>
-#include <cmath>
 
 #include "lamp_below_ceiling.hpp"
 #include "photile/photons.hpp"
-#include "test_scenes.hpp"
 #include "trace/light_offset.hpp"
 #include "trace/photon_tracer.hpp"
 #include "trace/random_stream.hpp"
@@ -88,7 +86,7 @@ TEST_CASE("hot spots: rays that are aimed there have the density that they say")
 TEST_CASE("a light in a surface lies on the side to which it shines, or below, or within") {
   const auto moved = [](const Light& light) {
     SceneBuilder builder("room");
-    builder.box({0, 0, 0}, {4, 3, 4}, builder.add(diffuse(glm::vec3(0.5f))), true);
+    builder.box({0, 0, 0}, {4, 3, 4}, builder.add(diffuse(0.5f)), true);
     builder.grid({0, 1.5f, 0}, {4, 0, 0}, {0, 0, 4}, 1, 0);  // a storey
     builder.add(light);
     return builder.build().lights[0].position - light.position;

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "suns.hpp"
-#include "test_scenes.hpp"
 #include "trace/direct_light.hpp"
 #include "trace/light_sampler.hpp"
 #include "uniform.hpp"
@@ -15,7 +14,7 @@
 namespace photile::test {
 namespace {
 
-using namespace photile::trace;
+using namespace trace;
 using std::numbers::pi;
 
 constexpr int lamps_in_row = 12;
@@ -28,7 +27,7 @@ glm::dvec3 corner_of_lamp(int lamp) {
 /// A floor in z = 0 under a row of small lamps along x that are one light, half a metre apart.
 SceneBuilder floor_under_row() {
   SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   builder.grid({-1, -1, 0}, {8, 0, 0}, {0, 2, 0}, 1, black);
   const std::uint32_t row = builder.add(area_light("row", 1.0));
   for (int lamp = 0; lamp < lamps_in_row; ++lamp) {
@@ -115,7 +114,7 @@ TEST_CASE(
     "light clusters: of few lights a batch of 32 light samples chooses each just as often as "
     "its probability says") {
   SceneBuilder builder;
-  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(0.0f)));
   for (int disc = 0; disc < 3; ++disc) {  // too wide to be sampled apart
     Light light = sun_along({0, 0, -1}, 0.1f, "disc " + std::to_string(disc));
     light.power = 1.0 + 0.7 * disc;
@@ -152,7 +151,7 @@ TEST_CASE(
     return glm::vec3(radius * std::cos(angle), radius * std::sin(angle), height);
   };
   SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, black);
   const std::uint32_t disc = builder.add(area_light("disc", 1.0));
   for (int slice = 0; slice < slices; ++slice) {  // fronts look down
@@ -202,7 +201,7 @@ TEST_CASE("light clusters: densities of directions towards lamps integrate to on
 
 TEST_CASE("light clusters: light samples of one point choose other triangles of a cluster each") {
   SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   builder.grid({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 32, black, builder.add(area_light("panel")));
   const Scene scene = builder.build();
   const LightClusters clusters(scene, std::vector<double>{1.0}, bounding_sphere(scene));
@@ -222,7 +221,7 @@ TEST_CASE("light clusters: light samples of one point choose other triangles of 
 
 TEST_CASE("light clusters: the largest number below one chooses the last of all lights") {
   SceneBuilder builder;
-  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(glm::vec3(0.0f))));
+  builder.grid({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 1, builder.add(diffuse(0.0f)));
   constexpr std::size_t count = 29;  // so many equal shares sum to less than one
   for (std::size_t lamp = 0; lamp < count; ++lamp) builder.add(point_light("bulb", {0, 0, 1}));
   const Scene scene = builder.build();
@@ -241,7 +240,7 @@ TEST_CASE("light clusters: the largest number below one chooses the last of all 
 
 TEST_CASE("light clusters: triangles with the same middle are not split") {
   SceneBuilder builder;
-  const std::uint32_t black = builder.add(diffuse(glm::vec3(0.0f)));
+  const std::uint32_t black = builder.add(diffuse(0.0f));
   const std::uint32_t lamp = builder.add(area_light("lamp"));
   builder.triangle({3, 0, 0}, {0, 3, 0}, {0, 0, 0}, black, lamp);
   builder.triangle({2, 1, 0}, {1, 2, 0}, {0, 0, 0}, black, lamp);

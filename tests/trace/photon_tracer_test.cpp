@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
-#include <numeric>
 #include <random>
 #include <type_traits>
 
@@ -13,7 +12,6 @@
 #include "photile/photons.hpp"
 #include "statistical_tests.hpp"
 #include "suns.hpp"
-#include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
@@ -28,17 +26,15 @@ double stored_luminance(const Photons& photons) {
 std::vector<double> stored_luminances(const Scene& scene, std::uint64_t emitted,
                                       int roulette_start = 1) {
   const RayScene rays(scene);
-  std::vector<double> values;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed)
-    values.push_back(stored_luminance(
-        trace_photons(rays,
-                      {.emitted_photons = emitted, .seed = seed, .roulette_start = roulette_start})
-            .photons));
-  return values;
+  return of_seeds([&](std::uint64_t seed) {
+    const PhotonTracerParameters tracing{
+        .emitted_photons = emitted, .seed = seed, .roulette_start = roulette_start};
+    return stored_luminance(trace_photons(rays, tracing).photons);
+  });
 }
 
 Scene scene_with_powers(const std::vector<double>& powers) {
-  Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+  Scene scene = closed_box(diffuse(0.5f));
   scene.lights.clear();
   for (const double power : powers)
     scene.lights.push_back(
@@ -51,25 +47,19 @@ std::uint64_t sum(const std::vector<std::uint64_t>& values) {
 }
 
 TEST_CASE("In a closed diffuse box the stored flux is 1 + rho + rho^2 + ... = 1 / (1 - rho)") {
-  CHECK_VERDICT(
-      mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.2f))), 40'000), 1.25, 0.01));
-  CHECK_VERDICT(
-      mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.5f))), 60'000), 2.0, 0.02));
-  CHECK_VERDICT(
-      mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.8f))), 60'000), 5.0, 0.08));
+  CHECK_VERDICT(mean_is(stored_luminances(closed_box(diffuse(0.2f)), 40'000), 1.25, 0.01));
+  CHECK_VERDICT(mean_is(stored_luminances(closed_box(diffuse(0.5f)), 60'000), 2.0, 0.02));
+  CHECK_VERDICT(mean_is(stored_luminances(closed_box(diffuse(0.8f)), 60'000), 5.0, 0.08));
   // Long paths: in the second case most of the light is that of more than a hundred bounces.
-  CHECK_VERDICT(
-      mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.95f))), 20'000), 20.0, 0.4));
-  CHECK_VERDICT(
-      mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.99f))), 8'000), 100.0, 4.0));
+  CHECK_VERDICT(mean_is(stored_luminances(closed_box(diffuse(0.95f)), 20'000), 20.0, 0.4));
+  CHECK_VERDICT(mean_is(stored_luminances(closed_box(diffuse(0.99f)), 8'000), 100.0, 4.0));
   // Without roulette for three bounces the flux shrinks instead of the number of photons.
-  CHECK_VERDICT(
-      mean_is(stored_luminances(closed_box(diffuse(glm::vec3(0.5f))), 60'000, 4), 2.0, 0.02));
+  CHECK_VERDICT(mean_is(stored_luminances(closed_box(diffuse(0.5f)), 60'000, 4), 2.0, 0.02));
 }
 
 TEST_CASE("In a box that reflects all light paths end") {
   // Where the chance to go on is 0.99, a hundred more surfaces are expected.
-  const Scene scene = closed_box(diffuse(glm::vec3(1.0f)));
+  const Scene scene = closed_box(diffuse(1.0f));
   const PhotonTracerResult result = trace_photons(RayScene(scene), {.emitted_photons = 2'000});
   CHECK(static_cast<double>(result.photons.size()) / 2'000 ==
         Approx(defaults::long_path + 99).epsilon(0.1));
@@ -95,9 +85,9 @@ TEST_CASE(
     "A mirror and a glass ball in the box change nothing in the sum over bounces on its walls") {
   // Lossless specular surfaces pass all flux on, so every wall hit still scales it by the albedo.
   SceneBuilder builder;
-  builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(diffuse(glm::vec3(0.5f))), true);
+  builder.box(glm::vec3(0.0f), glm::vec3(1.0f), builder.add(diffuse(0.5f)), true);
   builder.box(glm::vec3(0.1f), glm::vec3(0.3f), builder.add(glass(1.5f)), false);
-  builder.box({0.6f, 0.6f, 0.1f}, glm::vec3(0.8f), builder.add(mirror(glm::vec3(1.0f))), false);
+  builder.box({0.6f, 0.6f, 0.1f}, glm::vec3(0.8f), builder.add(mirror(1.0f)), false);
   builder.quad({0.1f, 0.5f, 0.2f}, {0.4f, 0.5f, 0.2f}, {0.4f, 0.5f, 0.8f}, {0.1f, 0.5f, 0.8f},
                builder.add(glass(1.5f, true)));
   builder.add(point_light("lamp", {0.4f, 0.7f, 0.9f}));
@@ -142,7 +132,7 @@ TEST_CASE("Photons of a light all carry the same flux in their strongest channel
 }
 
 TEST_CASE("A photon is stored where it lands, before it is reflected") {
-  Scene scene = plate(diffuse(glm::vec3(0.5f)), 2);
+  Scene scene = plate(diffuse(0.5f), 2);
   scene.materials[0].specular = glm::vec3(0.04f);
   Light sun = sun_along(glm::normalize(glm::vec3(1, 0, -2)));
   sun.color = glm::vec3(0.5f, 1.0f, 2.0f) / static_cast<float>(luminance({0.5, 1.0, 2.0}));
@@ -159,7 +149,7 @@ TEST_CASE("A photon is stored where it lands, before it is reflected") {
 }
 
 TEST_CASE("Light from below is stored on the lower side") {
-  Scene scene = plate(diffuse(glm::vec3(0.5f)), 2);
+  Scene scene = plate(diffuse(0.5f), 2);
   scene.lights.push_back(point_light("lamp", {0, 0, -1}));
   const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 1000}).photons;
   REQUIRE(photons.size() > 100);
@@ -167,11 +157,11 @@ TEST_CASE("Light from below is stored on the lower side") {
 }
 
 TEST_CASE("Nothing is stored on mirrors and glass, and arrays that nobody needs stay empty") {
-  Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+  Scene scene = closed_box(diffuse(0.5f));
   const Photons diffuse_only = trace_photons(RayScene(scene), {.emitted_photons = 1000}).photons;
   CHECK(diffuse_only.incoming.empty());
   CHECK(diffuse_only.light.empty());
-  scene.materials.push_back(mirror(glm::vec3(0.9f)));
+  scene.materials.push_back(mirror(0.9f));
   scene.triangle_material[0] = scene.triangle_material[5] = 1;
   const Photons photons = trace_photons(RayScene(scene), {.emitted_photons = 10'000}).photons;
   for (const std::uint32_t s : photons.oriented_face) {
@@ -214,7 +204,7 @@ TEST_CASE("Paths are shared between lights by quota, exactly, and none is left w
 }
 
 TEST_CASE("Parameters out of range and scenes without lights are refused in one line") {
-  Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+  Scene scene = closed_box(diffuse(0.5f));
   const RayScene rays(scene);
   CHECK_THROWS_AS(trace_photons(rays, {.emitted_photons = 0}), UsageError);
   CHECK_THROWS_AS(trace_photons(rays, {.emitted_photons = limits::max_emitted_photons + 1}),
@@ -234,7 +224,7 @@ TEST_CASE("Tracing stops when it is cancelled, and reports all of its paths when
     void advance(std::uint64_t count) override { done += count; }
     bool cancelled() const override { return done >= stop_after; }
   };
-  const Scene scene = closed_box(diffuse(glm::vec3(0.5f)));
+  const Scene scene = closed_box(diffuse(0.5f));
   const RayScene rays(scene);
   Recorder all;
   trace_photons(rays, {.emitted_photons = 50'000}, all);

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "photile/errors.hpp"
 #include "photile/photons.hpp"
@@ -20,7 +18,7 @@
 
 namespace photile::test {
 
-using namespace photile::trace;
+using namespace trace;
 
 namespace {
 
@@ -51,26 +49,21 @@ Inside inside(const Scene& scene, std::uint64_t seed, std::uint64_t paths) {
 }
 
 std::vector<double> fluxes_inside(const Scene& scene, std::uint64_t paths) {
-  std::vector<double> fluxes;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed)
-    fluxes.push_back(inside(scene, seed, paths).flux);
-  return fluxes;
+  return of_seeds([&](std::uint64_t seed) { return inside(scene, seed, paths).flux; });
 }
 
 std::vector<double> irradiances(const Scene& scene, const Sensor& sensor, int rays) {
-  std::vector<double> values;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+  return of_seeds([&](std::uint64_t seed) {
     const auto layers =
         gather_by_paths(scene, std::span(&sensor, 1), {.rays = rays}, seed).layers.dense();
-    values.push_back(double{layers.layers.at(0).illuminance.at(0)} * scene.lights[0].power);
-  }
-  return values;
+    return double{layers.layers.at(0).illuminance.at(0)} * scene.lights[0].power;
+  });
 }
 
 }  // namespace
 
 TEST_CASE("what enters a window under an even sky is pi L A, whatever part of it is a portal") {
-  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.0f)));
+  Scene scene = room_under_even_sky(diffuse(0.0f));
   // The fraction of the light's 1 lm: pi L A over 4 pi L times the disc.
   const double disc = pi * std::pow(bounding_sphere(scene).radius, 2);
   const double truth = Room::window_area / (4 * disc);
@@ -90,7 +83,7 @@ TEST_CASE("what enters a window under an even sky is pi L A, whatever part of it
 }
 
 TEST_CASE("a sun through a window brings its lux times what the window shows") {
-  Scene scene = Room::builder(diffuse(glm::vec3(0.0f))).build();
+  Scene scene = Room::builder(diffuse(0.0f)).build();
   const Light sun =
       sun_along(glm::normalize(glm::vec3(0.1f, -0.4f, 1.0f)), GENERATE(0.0f, 0.0093f));
   scene.lights.push_back(sun);
@@ -101,7 +94,7 @@ TEST_CASE("a sun through a window brings its lux times what the window shows") {
 }
 
 TEST_CASE("reflected light is the same with portals and without") {
-  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.5f)));
+  Scene scene = room_under_even_sky(diffuse(0.5f));
   const auto without = fluxes_inside(scene, 100'000);
   scene.portals = {Room::window()};
   const auto with = fluxes_inside(scene, 20'000);
@@ -110,14 +103,14 @@ TEST_CASE("reflected light is the same with portals and without") {
 }
 
 TEST_CASE("portals bring at least ten times the photons") {
-  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.5f)));
+  Scene scene = room_under_even_sky(diffuse(0.5f));
   const std::size_t without = inside(scene, 1, 100'000).count;
   scene.portals = {Room::window()};
   CHECK(inside(scene, 1, 100'000).count > 10 * without);
 }
 
 TEST_CASE("light samples through a portal find pi L times the window's form factor") {
-  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.0f)));
+  Scene scene = room_under_even_sky(diffuse(0.0f));
   const glm::dvec3 corner(Room::left, Room::sill, 0), u(1.2, 0, 0), v(0, 1, 0);
   for (const glm::dvec3& normal : {glm::dvec3(0, 0, -1), glm::normalize(glm::dvec3(0.2, 1, -1))}) {
     const Sensor sensor{{1.5, 0.8, 3.5}, normal};
@@ -132,7 +125,7 @@ TEST_CASE("light samples through a portal find pi L times the window's form fact
 TEST_CASE("a ray from the wall around a portal has the density that light samples there have") {
   // It starts a rounding above the wall, before the portal's plane, where the portal looks
   // large; from the wall itself it cannot be seen, and no light sample goes through it.
-  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.5f)));
+  Scene scene = room_under_even_sky(diffuse(0.5f));
   scene.portals = {Room::window()};
   const LightSampler lights(scene);
   const glm::vec3 on_wall(0.5f, 1.4f, 0), start = on_wall + glm::vec3(0, 0, 1e-5f);
@@ -145,24 +138,23 @@ TEST_CASE("a ray from the wall around a portal has the density that light sample
 }
 
 TEST_CASE("a lamp is as bright beside portals") {
-  SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.0f)));
+  SceneBuilder builder = Room::builder(diffuse(0.0f));
   builder.add(point_light("lamp", {2, 2, 2}));
   Scene scene = builder.build();
   add_environment(scene, even_surroundings());
   scene.portals = {Room::window()};
   const Sensor sensor{{2, 0.5, 2}, {0, 1, 0}};
-  std::vector<double> values;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+  const std::vector<double> values = of_seeds([&](std::uint64_t seed) {
     const auto layers =
         gather_by_paths(scene, std::span(&sensor, 1), {.rays = 512}, seed).layers.dense();
-    values.push_back(double{layers.layers.at(0).illuminance.at(0)});
-  }
+    return double{layers.layers.at(0).illuminance.at(0)};
+  });
   const double truth = 1 / (4 * pi * 1.5 * 1.5);
   CHECK_VERDICT(mean_is(values, truth, 0.03 * truth));
 }
 
 TEST_CASE("an opening is found from the camera's room, and faces inwards") {
-  const Scene scene = Room::builder(diffuse(glm::vec3(0.5f))).build();
+  const Scene scene = Room::builder(diffuse(0.5f)).build();
   const auto portals = find_portals(scene);
   REQUIRE(portals.size() == 1);
   const glm::vec3 across = glm::cross(portals[0].u, portals[0].v);
@@ -174,7 +166,7 @@ TEST_CASE("an opening is found from the camera's room, and faces inwards") {
 }
 
 TEST_CASE("each of two windows is found once") {
-  auto portals = find_portals(Room::builder(diffuse(glm::vec3(0.5f)), true).build());
+  auto portals = find_portals(Room::builder(diffuse(0.5f), true).build());
   REQUIRE(portals.size() == 2);
   if (portals[0].corner.z > portals[1].corner.z) std::swap(portals[0], portals[1]);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -185,8 +177,8 @@ TEST_CASE("each of two windows is found once") {
 
 TEST_CASE("light on the outer side of a frame comes by the portal that is found") {
   // In a reveal of 30 cm, a pane at its outer end, and bars of a frame 5 cm behind it.
-  SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.5f)));
-  const std::uint32_t white = builder.add(diffuse(glm::vec3(0.8f)));
+  SceneBuilder builder = Room::builder(diffuse(0.5f));
+  const std::uint32_t white = builder.add(diffuse(0.8f));
   const std::uint32_t pane = builder.add(glass(1.5f, true));
   constexpr float left = Room::left, right = Room::right, sill = Room::sill, head = Room::head;
   constexpr float out = -0.3f, at = -0.25f, bar = 0.06f;
@@ -217,7 +209,7 @@ TEST_CASE("light on the outer side of a frame comes by the portal that is found"
 }
 
 TEST_CASE("photons through portals start before all of the scene, wherever it lies") {
-  Scene scene = room_under_even_sky(diffuse(glm::vec3(0.5f)));
+  Scene scene = room_under_even_sky(diffuse(0.5f));
   const glm::vec3 moved = GENERATE(glm::vec3(0.0f), glm::vec3(30.0f, -40.0f, 120.0f));
   for (glm::vec3& vertex : scene.vertices) vertex += moved;
   scene.portals = {Room::window()};
@@ -232,7 +224,7 @@ TEST_CASE("photons through portals start before all of the scene, wherever it li
 }
 
 TEST_CASE("panes of a named material are portals that face inwards") {
-  SceneBuilder builder = Room::builder(diffuse(glm::vec3(0.5f)));
+  SceneBuilder builder = Room::builder(diffuse(0.5f));
   Material pane = glass(1.5f, true);
   pane.name = "window pane";
   const std::uint32_t material = builder.add(pane);
@@ -251,8 +243,8 @@ TEST_CASE("panes of a named material are portals that face inwards") {
 }
 
 TEST_CASE("outside there are no portals, nor in a closed room") {
-  CHECK(find_portals(closed_box(diffuse(glm::vec3(0.5f)))).empty());
-  CHECK(find_portals(plate(diffuse(glm::vec3(0.5f)), 2)).empty());
+  CHECK(find_portals(closed_box(diffuse(0.5f))).empty());
+  CHECK(find_portals(plate(diffuse(0.5f), 2)).empty());
 }
 
 }  // namespace photile::test

@@ -1,10 +1,7 @@
 // What the camera sees, against geometry worked out by hand.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <random>
-#include <set>
 #include <tuple>
-#include <vector>
 
 #include "photile/errors.hpp"
 #include "photile/ray_scene.hpp"
@@ -18,19 +15,28 @@ namespace photile::test {
 namespace {
 
 /// 2 m above the origin, looking down; up in the picture is +y, right is +x. The film spans 2 x 2 m
-/// of the plane z = 0.
-Camera camera_above() {
+/// of the plane z = 0, or so little that all rays are at right angles to it.
+enum class Film { wide, narrow };
+Camera camera_above(Film film = Film::wide) {
   Camera camera;
   camera.position = {0, 0, 2};
   camera.forward = {0, 0, -1};
   camera.up = {0, 1, 0};
   camera.right = {1, 0, 0};
-  camera.vertical_field_of_view = 2 * std::atan(0.5);
+  camera.vertical_field_of_view = film == Film::wide ? 2 * std::atan(0.5) : 0.01;
   return camera;
 }
 
-PrimaryHitBatch photograph(const Scene& scene, const PrimaryHitParameters& film) {
-  return trace_primary_hits(RayScene(scene), camera_above(), film, 0, film.height);
+PrimaryHitBatch photograph(const Scene& scene, const PrimaryHitParameters& film,
+                           Film size = Film::wide) {
+  return trace_primary_hits(RayScene(scene), camera_above(size), film, 0, film.height);
+}
+
+/// In z = 0, and in z = 3 above the camera.
+void add_floor_and_ceiling(SceneBuilder& builder) {
+  const std::uint32_t grey = builder.add(diffuse(0.5f));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, grey);
+  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, grey);
 }
 
 glm::dvec3 total_emission(const PrimaryHitBatch& batch) {
@@ -67,7 +73,7 @@ TEST_CASE("Each sample of a pixel hits the plate in that pixel's own square, in 
 }
 
 TEST_CASE("Samples fall evenly over a pixel, and rays beside the plate hit nothing") {
-  const Scene scene = plate(diffuse(glm::vec3(0.5f)), 1);  // a quarter of the film
+  const Scene scene = plate(diffuse(0.5f), 1);  // a quarter of the film
   const PrimaryHitBatch batch =
       photograph(scene, {.width = 1, .height = 1, .samples_per_pixel = 40'000});
   CHECK(batch.rays == 40'000);
@@ -137,7 +143,7 @@ TEST_CASE("A lamp in view is seen from its front only, at 1 / (pi A), and reflec
   const bool two_sided = GENERATE(false, true);
   const bool facing = GENERATE(false, true);
   SceneBuilder builder;
-  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t grey = builder.add(diffuse(0.5f));
   Light light = area_light("lamp", 70, two_sided);
   light.color = glm::vec3(2.0f, 1.0f, 0.5f) / static_cast<float>(luminance({2.0, 1.0, 0.5}));
   const std::uint32_t lamp = builder.add(light);
@@ -161,7 +167,7 @@ TEST_CASE("A mirror shows the lamp above it, tinted, and stores no hit of its ow
   const std::uint32_t lamp = builder.add(area_light("lamp"));
   builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, silver);
   // Behind the camera, facing down, and large enough to fill the mirror.
-  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))), lamp);
+  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, builder.add(diffuse(0.5f)), lamp);
   const PrimaryHitBatch batch = photograph(builder.build(), {.width = 8, .height = 8});
   CHECK(batch.rays == 2 * 8 * 8 * 4);
   REQUIRE(batch.hits.size() == 8 * 8 * 4);
@@ -176,14 +182,10 @@ TEST_CASE("A mirror shows the lamp above it, tinted, and stores no hit of its ow
 TEST_CASE("A window splits rays by Fresnel's probability and conserves their number") {
   SceneBuilder builder;
   builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(glass(1.5f, true)));
-  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
-  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, grey);
-  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, grey);
-  Camera camera = camera_above();
-  camera.vertical_field_of_view = 0.01;  // normal incidence
+  add_floor_and_ceiling(builder);
   const PrimaryHits hits =
-      trace_primary_hits(RayScene(builder.build()), camera,
-                         {.width = 64, .height = 64, .samples_per_pixel = 16}, 0, 64)
+      photograph(builder.build(), {.width = 64, .height = 64, .samples_per_pixel = 16},
+                 Film::narrow)
           .hits;
   const double all = 64 * 64 * 16;
   double reflected = 0;
@@ -200,16 +202,12 @@ TEST_CASE("A window parts rays by Fresnel's shares, where it is not left to chan
   const std::uint32_t pane = builder.add(glass(1.5f, thin));
   builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, pane);
   if (!thin) builder.grid({-2, -2, 0.5f}, {0, 4, 0}, {4, 0, 0}, 1, pane);
-  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
-  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, grey);
-  builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, grey);
-  Camera camera = camera_above();
-  camera.vertical_field_of_view = 0.01;  // normal incidence
+  add_floor_and_ceiling(builder);
   const int samples = 32 * 32 * 16;
   const PrimaryHits hits =
-      trace_primary_hits(
-          RayScene(builder.build()), camera,
-          {.width = 32, .height = 32, .samples_per_pixel = 16, .split_at_glass = true}, 0, 32)
+      photograph(builder.build(),
+                 {.width = 32, .height = 32, .samples_per_pixel = 16, .split_at_glass = true},
+                 Film::narrow)
           .hits;
   double reflected = 0, transmitted = 0, shares = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -228,14 +226,13 @@ TEST_CASE("A window parts rays by Fresnel's shares, where it is not left to chan
 
 TEST_CASE("A surface that is partly there parts rays, where it is not left to chance") {
   SceneBuilder builder;
-  Material curtain = diffuse(glm::vec3(0.5f));
+  Material curtain = diffuse(0.5f);
   curtain.opacity = 0.3f;
   builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(curtain));
-  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(0.5f)));
   const PrimaryHits hits =
-      trace_primary_hits(RayScene(builder.build()), camera_above(),
-                         {.width = 8, .height = 8, .samples_per_pixel = 4, .split_at_glass = true},
-                         0, 8)
+      photograph(builder.build(),
+                 {.width = 8, .height = 8, .samples_per_pixel = 4, .split_at_glass = true})
           .hits;
   REQUIRE(hits.size() == 2 * 8 * 8 * 4);  // each sample sees both
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -248,8 +245,8 @@ TEST_CASE("A surface that is partly there parts rays, where it is not left to ch
 TEST_CASE("Pixels that show an edge have more samples, which count as much together") {
   // The borders of a plate cross pixels; a border of two materials lies in the plane of the floor.
   SceneBuilder builder;
-  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
-  const std::uint32_t other = builder.add(diffuse(glm::vec3(0.5f)));
+  const std::uint32_t grey = builder.add(diffuse(0.5f));
+  const std::uint32_t other = builder.add(diffuse(0.5f));
   builder.grid({-4, -4, 0}, {8, 0, 0}, {0, 4.8f, 0}, 3, grey);
   builder.grid({-4, 0.8f, 0}, {8, 0, 0}, {0, 3.2f, 0}, 3, other);
   builder.grid({-0.31f, -0.33f, 0.5f}, {0.6f, 0, 0}, {0, 0.7f, 0}, 1, grey);
@@ -298,16 +295,14 @@ TEST_CASE("Pixels that show an edge have more samples, which count as much toget
 TEST_CASE("Glass parts the rays of pixels with an edge as it parts those of others") {
   SceneBuilder builder;
   builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(glass(1.5f, true)));
-  builder.grid({-2, -2, 0}, {2, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))));
-  const std::uint32_t grey = builder.add(diffuse(glm::vec3(0.5f)));
+  builder.grid({-2, -2, 0}, {2, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(0.5f)));
+  const std::uint32_t grey = builder.add(diffuse(0.5f));
   builder.grid({0, -2, 0}, {2, 0, 0}, {0, 4, 0}, 1, grey);
   builder.grid({-5, -5, 3}, {0, 10, 0}, {10, 0, 0}, 1, grey);
   PrimaryHitParameters film{.width = 1, .height = 1, .samples_per_pixel = 16};
   film.times_at_edges = 4;
   film.split_at_glass = true;
-  Camera camera = camera_above();
-  camera.vertical_field_of_view = 0.01;  // normal incidence
-  const PrimaryHits hits = trace_primary_hits(RayScene(builder.build()), camera, film, 0, 1).hits;
+  const PrimaryHits hits = photograph(builder.build(), film, Film::narrow).hits;
   REQUIRE(hits.size() == 2 * 4 * 16);  // each sample sees the floor, and the ceiling in the pane
   double reflected = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -323,12 +318,9 @@ TEST_CASE("A lamp under water is seen from above by its radiance over the square
   const std::uint32_t solid = builder.add(glass(1.5f));
   builder.grid({-2, -2, 1}, {4, 0, 0}, {0, 4, 0}, 1, solid);
   if (closed) builder.grid({-2, -2, 0.5f}, {0, 4, 0}, {4, 0, 0}, 1, solid);
-  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(glm::vec3(0.5f))), lamp);
-  Camera camera = camera_above();
-  camera.vertical_field_of_view = 0.01;  // normal incidence
-  const PrimaryHitBatch batch =
-      trace_primary_hits(RayScene(builder.build()), camera,
-                         {.width = 64, .height = 64, .samples_per_pixel = 16}, 0, 64);
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 1, builder.add(diffuse(0.5f)), lamp);
+  const PrimaryHitBatch batch = photograph(
+      builder.build(), {.width = 64, .height = 64, .samples_per_pixel = 16}, Film::narrow);
   // A lamp below a slab of glass is seen as without it, but for what its faces reflect.
   const double expected = (closed ? 1.0 : 1 / 2.25) / (M_PI * 16);
   for (const VisibleEmission& seen : batch.emission) {
@@ -340,7 +332,7 @@ TEST_CASE("A lamp under water is seen from above by its radiance over the square
 
 TEST_CASE("A ray between two mirrors ends at the bound on its depth") {
   SceneBuilder builder;
-  const std::uint32_t silver = builder.add(mirror(glm::vec3(1.0f)));
+  const std::uint32_t silver = builder.add(mirror(1.0f));
   builder.grid({-50, -50, 0}, {100, 0, 0}, {0, 100, 0}, 1, silver);
   builder.grid({-50, -50, 3}, {0, 100, 0}, {100, 0, 0}, 1, silver);
   const PrimaryHitBatch batch = photograph(
@@ -350,7 +342,7 @@ TEST_CASE("A ray between two mirrors ends at the bound on its depth") {
 }
 
 TEST_CASE("Films and rows out of range are refused") {
-  const Scene scene = plate(diffuse(glm::vec3(0.5f)), 1);
+  const Scene scene = plate(diffuse(0.5f), 1);
   const RayScene rays(scene);
   const auto traced = [&](const PrimaryHitParameters& film, int first, int last) {
     trace_primary_hits(rays, camera_above(), film, first, last);
@@ -365,17 +357,14 @@ TEST_CASE("Films and rows out of range are refused") {
 
 TEST_CASE("what comes by reflection and what is left out are the whole") {
   // A plate under the camera, half of it a mirror that sees a lamp above, a quarter glossy.
-  test::SceneBuilder builder;
-  const auto matt = builder.add(test::diffuse(glm::vec3(0.5f)));
-  const auto shining = builder.add(test::glossy(glm::vec3(0.4f), glm::vec3(0.04f), 0.3f));
-  const auto mirror = builder.add(test::mirror(glm::vec3(0.9f)));
+  SceneBuilder builder;
+  const auto matt = builder.add(diffuse(0.5f));
+  const auto shining = builder.add(glossy(0.4f, 0.04f, 0.3f));
+  const auto mirror = builder.add(test::mirror(0.9f));
   builder.quad({-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 1, 0}, matt);
   builder.quad({-1, -1, 0}, {0, -1, 0}, {0, 0, 0}, {-1, 0, 0}, shining);
   builder.quad({0, -1, 0}, {1, -1, 0}, {1, 1, 0}, {0, 1, 0}, mirror);
-  Light lamp;
-  lamp.name = "lamp";
-  lamp.power = 10;
-  const auto light = builder.add(lamp);
+  const auto light = builder.add(area_light("lamp", 10));
   builder.quad({-9, 9, 5}, {9, 9, 5}, {9, -9, 5}, {-9, -9, 5}, matt, light);  // faces down
   const Scene scene = builder.build();
   const PrimaryHitParameters film{.width = 16, .height = 16, .samples_per_pixel = 4};
@@ -404,9 +393,9 @@ TEST_CASE("what comes by reflection and what is left out are the whole") {
 }
 
 TEST_CASE("what lies behind a pane of thin glass is seen, and not reflected") {
-  test::SceneBuilder builder;
-  const auto matt = builder.add(test::diffuse(glm::vec3(0.5f)));
-  const auto pane = builder.add(test::glass(1.0f, true));  // of index 1: it reflects nothing
+  SceneBuilder builder;
+  const auto matt = builder.add(diffuse(0.5f));
+  const auto pane = builder.add(glass(1.0f, true));  // of index 1: it reflects nothing
   builder.quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, matt);
   builder.quad({-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}, pane);
   const Scene scene = builder.build();

@@ -1,13 +1,10 @@
 // Random numbers, Sobol points and orders.
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <cstdint>
 #include <numbers>
 #include <random>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "geometry/radix_sort.hpp"
 #include "statistical_tests.hpp"
@@ -18,7 +15,7 @@
 namespace photile::test {
 namespace {
 
-using namespace photile::trace;
+using namespace trace;
 
 // Scrambled Sobol points: nets, uniformity, known integrals, errors.
 

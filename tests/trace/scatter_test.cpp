@@ -3,8 +3,6 @@
 
 #include <array>
 #include <catch2/catch.hpp>
-#include <cmath>
-#include <glm/gtc/constants.hpp>
 
 #include "photile/device/bsdf.h"
 #include "statistical_tests.hpp"
@@ -17,7 +15,7 @@
 namespace photile::test {
 namespace {
 
-using namespace photile::trace;
+using namespace trace;
 
 // Scattering at opaque surfaces against integrals of the BSDF.
 
@@ -74,9 +72,8 @@ double integral(const Material& material, const glm::dvec3& to_light, const glm:
 template <class G>
 void check_against_integral(const Scene& scene, const glm::vec3& direction,
                             const glm::dvec3& normal, double delta, G&& g) {
-  std::vector<double> means;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed)
-    means.push_back(mean_weight(scene, direction, seed, 20'000, g));
+  const std::vector<double> means =
+      of_seeds([&](std::uint64_t seed) { return mean_weight(scene, direction, seed, 20'000, g); });
   const double truth = integral(scene.materials[0], glm::dvec3(-direction), normal, g);
   CHECK_VERDICT(mean_is(means, truth, delta));
 }
@@ -99,9 +96,8 @@ TEST_CASE("A Lambertian surface scatters by the cosine law with its albedo as we
 }
 
 TEST_CASE("A glossy surface scatters as much as the integral of its BSDF, to each side alike") {
-  for (const Material& material : {glossy(glm::vec3(0.5f), glm::vec3(0.04f), 0.2f),
-                                   glossy(glm::vec3(0), glm::vec3(0.8f), 0.1f),
-                                   glossy(glm::vec3(0.3f), glm::vec3(0.5f), 0.7f)})
+  for (const Material& material :
+       {glossy(0.5f, 0.04f, 0.2f), glossy(0, 0.8f, 0.1f), glossy(0.3f, 0.5f, 0.7f)})
     for (const float tilt : {0.0f, 1.0f, 3.0f}) {
       const Scene scene = plate(material, 2);
       const glm::vec3 direction = glm::normalize(glm::vec3(tilt, 0, -1));
@@ -116,7 +112,7 @@ TEST_CASE("A glossy surface scatters as much as the integral of its BSDF, to eac
 }
 
 TEST_CASE("A tilted shading normal turns the lobe and leaves the cosine to the geometric normal") {
-  Scene scene = plate(glossy(glm::vec3(0.4f), glm::vec3(0.3f), 0.3f), 2);
+  Scene scene = plate(glossy(0.4f, 0.3f, 0.3f), 2);
   const glm::vec3 tilted = glm::normalize(glm::vec3(0.3f, 0.1f, 1.0f));
   scene.corner_normal.assign(scene.triangle_count(), {tilted, tilted, tilted});
   const glm::vec3 direction = glm::normalize(glm::vec3(0.5f, 0, -1));
@@ -127,7 +123,7 @@ TEST_CASE("A tilted shading normal turns the lobe and leaves the cosine to the g
 }
 
 TEST_CASE("No photon is scattered into the surface, not even by a steep shading normal") {
-  Scene scene = plate(glossy(glm::vec3(0.4f), glm::vec3(0.9f), 0.4f), 2);
+  Scene scene = plate(glossy(0.4f, 0.9f, 0.4f), 2);
   const glm::vec3 steep = glm::normalize(glm::vec3(1.0f, 0.0f, 0.3f));
   scene.corner_normal.assign(scene.triangle_count(), {steep, steep, steep});
   const SurfacePoint point = top_of_plate(scene);
@@ -264,7 +260,7 @@ TEST_CASE("Glass tints what passes and not what it reflects") {
 }
 
 TEST_CASE("A steep shading normal sends no ray to the wrong side of a mirror or of glass") {
-  for (const Material& material : {mirror(glm::vec3(1.0f)), glass(1.5f)}) {
+  for (const Material& material : {mirror(1.0f), glass(1.5f)}) {
     Scene scene = plate(material, 2);
     const glm::vec3 steep = glm::normalize(glm::vec3(-1.0f, 0.0f, 0.2f));
     scene.corner_normal.assign(scene.triangle_count(), {steep, steep, steep});
@@ -287,14 +283,14 @@ TEST_CASE("Radiance loses the squared index on the way into the eye, and gets it
   CHECK(scatter(solid, downwards(0.8), 0.0f).radiance_factor == 1);
   CHECK(scatter(solid, upwards(1.2), never_reflect).radiance_factor == 1);  // total reflection
   CHECK(scatter(plate(glass(1.5f, true), 2), downwards(0.8), never_reflect).radiance_factor == 1);
-  CHECK(scatter(plate(mirror(glm::vec3(1.0f)), 2), downwards(0.8), 0.5f).radiance_factor == 1);
+  CHECK(scatter(plate(mirror(1.0f), 2), downwards(0.8), 0.5f).radiance_factor == 1);
 }
 
 // Paths along lobes, surface by surface.
 
 TEST_CASE("lobe paths: what one surface scatters says nothing of what another does") {
   SceneBuilder builder;
-  const std::uint32_t metal = builder.add(glossy(glm::vec3(0.0f), glm::vec3(0.95f), 0.02f));
+  const std::uint32_t metal = builder.add(glossy(0.0f, 0.95f, 0.02f));
   builder.grid({-50, -50, 0}, {100, 0, 0}, {0, 100, 0}, 1, metal);
   builder.grid({-50, -50, 1}, {0, 100, 0}, {100, 0, 0}, 1, metal);
   builder.add(point_light("bulb", {3, 2, 0.5f}));
@@ -365,11 +361,16 @@ SurfacePoint at(const Scene& scene, const glm::vec3& direction) {
   return surface_hit(scene, {0, 0.3f, 0.3f}, direction);
 }
 
+/// Normals as they are seen from above.
+ShadingNormals normals_of(const Scene& scene) {
+  return shading_normals(scene, top_of_plate(scene), {0, 0, -1});
+}
+
 TEST_CASE("Red turns the normal towards u, green towards -v") {
   const glm::vec3 down(0, 0, -1);
   for (const glm::vec3 normal :
        {glm::vec3(0.3f, 0, 1), glm::vec3(0, 0.3f, 1), glm::vec3(-0.2f, 0.4f, 1)}) {
-    const Scene scene = mapped_plate(diffuse(glm::vec3(0.5f)), normal);
+    const Scene scene = mapped_plate(diffuse(0.5f), normal);
     for (std::uint32_t triangle = 0; triangle < 2; ++triangle) {
       const SurfacePoint point = surface_hit(scene, {triangle, 0.3f, 0.3f}, down);
       const ShadingNormals normals = shading_normals(scene, point, down);
@@ -382,51 +383,46 @@ TEST_CASE("Red turns the normal towards u, green towards -v") {
 }
 
 TEST_CASE("A triangle of which any one corner has no normal is flat") {
-  const glm::vec3 down(0, 0, -1), tilted = glm::normalize(glm::vec3(0.3f, 0.1f, 1.0f));
+  const glm::vec3 tilted = glm::normalize(glm::vec3(0.3f, 0.1f, 1.0f));
   for (std::size_t missing = 0; missing < 3; ++missing) {
-    Scene scene = plate(diffuse(glm::vec3(0.5f)), 2);
+    Scene scene = plate(diffuse(0.5f), 2);
     scene.corner_normal.assign(scene.triangle_count(), {tilted, tilted, tilted});
-    CHECK(shading_normals(scene, at(scene, down), down).smooth != glm::vec3(0, 0, 1));
+    CHECK(normals_of(scene).smooth != glm::vec3(0, 0, 1));
     for (auto& corner : scene.corner_normal) corner[missing] = glm::vec3(0.0f);
-    CHECK(shading_normals(scene, at(scene, down), down).smooth == glm::vec3(0, 0, 1));
+    CHECK(normals_of(scene).smooth == glm::vec3(0, 0, 1));
   }
 }
 
 TEST_CASE("The winding and the mirroring of coordinates do not turn the map") {
-  const glm::vec3 down(0, 0, -1), normal = glm::normalize(glm::vec3(0.3f, 0.2f, 1));
-  Scene scene = mapped_plate(diffuse(glm::vec3(0.5f)), normal);
+  const glm::vec3 normal = glm::normalize(glm::vec3(0.3f, 0.2f, 1));
+  Scene scene = mapped_plate(diffuse(0.5f), normal);
   for (auto& uv : scene.corner_uv)
     for (glm::vec2& corner : uv) corner.x = -corner.x;  // red is now along -x
-  CHECK(glm::distance(shading_normals(scene, at(scene, down), down).mapped,
-                      glm::vec3(-normal.x, normal.y, normal.z)) < 0.01f);
+  CHECK(glm::distance(normals_of(scene).mapped, glm::vec3(-normal.x, normal.y, normal.z)) < 0.01f);
   // The other side is the front: from above the plate is seen from behind, where bumps are dents.
-  scene = rewound(mapped_plate(diffuse(glm::vec3(0.5f)), normal), [](std::size_t) { return true; });
-  const glm::vec3 behind = shading_normals(scene, at(scene, down), down).mapped;
+  scene = rewound(mapped_plate(diffuse(0.5f), normal), [](std::size_t) { return true; });
+  const glm::vec3 behind = normals_of(scene).mapped;
   CHECK(behind.z > 0);
   CHECK(glm::distance(behind, glm::vec3(-normal.x, -normal.y, normal.z)) < 0.01f);
 }
 
 TEST_CASE("The scale stretches the slope, and a flat map turns nothing") {
-  const glm::vec3 down(0, 0, -1);
-  Scene scene = mapped_plate(diffuse(glm::vec3(0.5f)), {0.2f, 0, 1});
+  Scene scene = mapped_plate(diffuse(0.5f), {0.2f, 0, 1});
   scene.materials[0].normal_scale = 2;
-  CHECK(glm::distance(shading_normals(scene, at(scene, down), down).mapped,
-                      glm::normalize(glm::vec3(0.4f, 0, 1))) < 0.02f);
-  const Scene flat = mapped_plate(diffuse(glm::vec3(0.5f)), {0, 0, 1});
-  CHECK(glm::distance(shading_normals(flat, at(flat, down), down).mapped, glm::vec3(0, 0, 1)) <
-        0.008f);
+  CHECK(glm::distance(normals_of(scene).mapped, glm::normalize(glm::vec3(0.4f, 0, 1))) < 0.02f);
+  const Scene flat = mapped_plate(diffuse(0.5f), {0, 0, 1});
+  CHECK(glm::distance(normals_of(flat).mapped, glm::vec3(0, 0, 1)) < 0.008f);
 }
 
 TEST_CASE("Triangles whose texture has no area keep their normals") {
-  const glm::vec3 down(0, 0, -1);
-  Scene scene = mapped_plate(diffuse(glm::vec3(0.5f)), {0.5f, 0, 1});
+  Scene scene = mapped_plate(diffuse(0.5f), {0.5f, 0, 1});
   scene.corner_uv.assign(scene.triangle_count(), {});
-  CHECK(shading_normals(scene, at(scene, down), down).mapped == glm::vec3(0, 0, 1));
+  CHECK(normals_of(scene).mapped == glm::vec3(0, 0, 1));
 }
 
 TEST_CASE("Under a normal map a diffuse surface reflects light by the mapped cosine") {
   const glm::vec3 normal = glm::normalize(glm::vec3(0.3f, 0, 1)), down(0, 0, -1);
-  const Scene scene = mapped_plate(diffuse(glm::vec3(0.5f)), normal);
+  const Scene scene = mapped_plate(diffuse(0.5f), normal);
   const OpaqueBsdf bsdf(scene, at(scene, down), down);
   for (const glm::vec3 light : {glm::vec3(0.4f, 0, 1), glm::vec3(-0.4f, 0.1f, 1)}) {
     const glm::vec3 to = glm::normalize(light);
@@ -438,8 +434,7 @@ TEST_CASE("Under a normal map a diffuse surface reflects light by the mapped cos
 TEST_CASE("Under a normal map the eye sees no more light than there is, from whichever side") {
   const glm::vec3 normal(0.8f, 0, 1);
   for (const Material& material :
-       {diffuse(glm::vec3(0.9f)), glossy(glm::vec3(0.9f), glm::vec3(0.04f), 0.3f),
-        glossy(glm::vec3(0.0f), glm::vec3(1.0f), 0.3f)})
+       {diffuse(0.9f), glossy(0.9f, 0.04f, 0.3f), glossy(0.0f, 1.0f, 0.3f)})
     for (const float tilt : {-4.0f, -1.0f, 0.0f, 1.0f, 4.0f}) {
       const Scene scene = mapped_plate(material, normal);
       const glm::vec3 direction = glm::normalize(glm::vec3(tilt, 0, -1));
@@ -462,8 +457,7 @@ TEST_CASE("Under a normal map the eye sees no more light than there is, from whi
 }
 
 TEST_CASE("Photons and rays from the eye see the same surface under a normal map") {
-  const Scene scene =
-      mapped_plate(glossy(glm::vec3(0.6f), glm::vec3(0.04f), 0.4f), {0.3f, 0.2f, 1});
+  const Scene scene = mapped_plate(glossy(0.6f, 0.04f, 0.4f), {0.3f, 0.2f, 1});
   const glm::vec3 light = glm::normalize(glm::vec3(0.3f, 0.5f, 1)),
                   eye = glm::normalize(glm::vec3(-0.5f, 0.1f, 1));
   const OpaqueBsdf from_light(scene, at(scene, -light), -light, PathStart::light);

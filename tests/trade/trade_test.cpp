@@ -16,7 +16,7 @@ namespace photile::test {
 namespace {
 
 struct Subject {
-  Scene scene = load_scene(test::source_folder() / "scenes/cornell-box/cornell-box.obj");
+  Scene scene = load_scene(source_folder() / "scenes/cornell-box/cornell-box.obj");
   LightMix mix = LightMix::of(scene, defaults::lumen_per_watt);
   RenderParameters parameters;
   Image reference;
@@ -31,8 +31,8 @@ struct Subject {
   }
 
   std::vector<trade::TradePoint> measure(const std::vector<trade::TradeSettings>& settings) {
-    return trade::measure_trade(
-        {scene, scene.cameras.front(), {&test::device(), 1}, mix, reference}, settings);
+    return trade::measure_trade({scene, scene.cameras.front(), {&device(), 1}, mix, reference},
+                                settings);
   }
 };
 

@@ -17,8 +17,8 @@ struct LightControl {
   PowerUnit unit = PowerUnit::lumen;
   double power = 0;  ///< in `unit`, when it is on
   bool on = true;
-  std::optional<glm::vec3> color;  ///< sRGB in [0, 1] that tints it; none = the light's own
-  double kelvin = 0;               ///< temperature of its colour, in place of `color`; 0 = none
+  std::optional<glm::vec3> color = {};  ///< sRGB in [0, 1] that tints it; none = the light's own
+  double kelvin = 0;  ///< temperature of its colour, in place of `color`; 0 = none
 
   bool tinted() const { return color || kelvin > 0; }
 };

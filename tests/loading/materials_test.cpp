@@ -1,18 +1,116 @@
-// Reflectances of materials: read, set, and held against paths.
+// Materials of glTF files, and reflectances of any.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
-#include <glm/gtc/constants.hpp>
+#include <tuple>
 
 #include "photile/sensors.hpp"
 #include "scene/surface_models.hpp"
 #include "scene_files.hpp"
+#include "srgb_oracle.hpp"
+#include "statistical_tests.hpp"
 #include "test_scenes.hpp"
 
 namespace photile::test {
 namespace {
 
 using nlohmann::json;
+
+/// The square's material with `members` merged in, and what the import warned about.
+Material material(const json& members, Scene* report = nullptr) {
+  json document = square_document();
+  document["materials"][0].merge_patch(members);
+  Scene scene = load_gltf(document);
+  const Material result = scene.materials[scene.triangle_material[0]];
+  if (report != nullptr) *report = std::move(scene);
+  return result;
+}
+
+json factors(double metallic, double roughness) {
+  return {{"pbrMetallicRoughness", {{"metallicFactor", metallic}, {"roughnessFactor", roughness}}}};
+}
+
+void check_rgb(const glm::vec3& actual, const glm::dvec3& expected) {
+  CHECK(glm::length(glm::dvec3(actual) - expected) < 1e-6);
+}
+
+TEST_CASE("a glTF dielectric is its base colour under an F0 of 0.04, a metal reflects its own") {
+  const json white{{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 1}}}}};
+  using Row = std::tuple<json, glm::dvec3, glm::dvec3>;
+  for (const auto& [members, diffuse, specular] :
+       {Row{json::object(), {0.8, 0.6, 0.4}, {0.04, 0.04, 0.04}},
+        Row{white, {1, 1, 1}, {0.04, 0.04, 0.04}},
+        Row{factors(1.0, 0.5), {0, 0, 0}, {0.8, 0.6, 0.4}},
+        Row{factors(0.5, 0.5), {0.4, 0.3, 0.2}, {0.42, 0.32, 0.22}}}) {  // mixed linearly
+    const Material m = material(members);
+    CAPTURE(members);
+    CHECK(m.interaction == Interaction::opaque);
+    check_rgb(m.diffuse, diffuse);
+    check_rgb(m.specular, specular);
+    CHECK(m.roughness == Approx(0.25));  // alpha is roughness^2
+    CHECK(m.glossy());
+  }
+}
+
+TEST_CASE("a smooth glTF metal is a mirror, a smooth dielectric keeps the smallest alpha") {
+  const Material mirror = material(factors(1.0, 0.05));
+  CHECK(mirror.interaction == Interaction::mirror);
+  check_rgb(mirror.specular, {0.8, 0.6, 0.4});
+  const Material plastic = material(factors(0.0, 0.0));
+  CHECK(plastic.interaction == Interaction::opaque);
+  CHECK(plastic.roughness == 0.02f);
+}
+
+TEST_CASE("KHR_materials_specular's factor scales F0 and F90 of a dielectric, not of a metal") {
+  const auto with_factor = [](double metallic) {
+    json members = factors(metallic, 0.5);
+    members["extensions"]["KHR_materials_specular"]["specularFactor"] = 0.25;
+    return material(members);
+  };
+  check_rgb(with_factor(0).specular, {0.01, 0.01, 0.01});
+  CHECK(with_factor(0).f90 == 0.25f);
+  CHECK(with_factor(1).f90 == 1.0f);
+  check_rgb(with_factor(1).specular, {0.8, 0.6, 0.4});
+  CHECK(with_factor(0.5).f90 == 0.625f);
+}
+
+TEST_CASE("KHR_materials_specular 0 without metal is purely diffuse") {
+  const Material m =
+      material({{"extensions", {{"KHR_materials_specular", {{"specularFactor", 0}}}}}});
+  CHECK(m.specular == glm::vec3(0.0f));
+  CHECK_FALSE(m.glossy());
+}
+
+TEST_CASE("KHR_materials_ior and the specular colour set F0") {
+  const Material m =
+      material({{"extensions",
+                 {{"KHR_materials_ior", {{"ior", 2.0}}},
+                  {"KHR_materials_specular",
+                   {{"specularFactor", 0.5}, {"specularColorFactor", {1, 0.5, 0}}}}}}});
+  check_rgb(m.specular, {0.5 / 9.0, 0.25 / 9.0, 0.0});
+}
+
+TEST_CASE("transmission from one half on is glass, thin without a volume, and less is opaque") {
+  const auto transmission = [](double factor) {
+    return json{{"extensions",
+                 {{"KHR_materials_transmission", {{"transmissionFactor", factor}}},
+                  {"KHR_materials_ior", {{"ior", 1.33}}}}}};
+  };
+  const Material thin = material(transmission(0.5));
+  CHECK(thin.interaction == Interaction::glass);
+  CHECK(thin.thin);
+  CHECK(thin.index_of_refraction == 1.33f);
+  check_rgb(thin.transmission, {0.8, 0.6, 0.4});
+  json solid = transmission(1.0);
+  solid["extensions"]["KHR_materials_volume"]["thicknessFactor"] = 0.1;
+  CHECK_FALSE(material(solid).thin);
+  Scene scene;
+  CHECK(material(transmission(0.4), &scene).interaction == Interaction::opaque);
+  CHECK(warns(scene, {"'glow'", "opaque"}));
+}
+
+// Reflectances of materials: read, set, and held against paths.
+
 using scene::reflectance_of;
 
 /// A plate so wide that nothing else is seen from just above it.
@@ -28,23 +126,19 @@ double whole(const Scene& scene) {
   return reflectance_of(scene, scene.materials[scene.triangle_material[0]])->whole;
 }
 
-}  // namespace
-
 TEST_CASE("a reflectance is what paths find under an even sky") {
   const Material material =
-      GENERATE(diffuse(glm::vec3(0.5f)), glossy(glm::vec3(0.5f), glm::vec3(0.04f), 0.25f),
-               glossy(glm::vec3(0.2f), glm::vec3(0.3f), 0.6f));
+      GENERATE(diffuse(0.5f), glossy(0.5f, 0.04f, 0.25f), glossy(0.2f, 0.3f, 0.6f));
   Scene scene = wide_plate(material);
   add_environment(scene, EnvironmentMap("sky", 2, 1, std::vector<glm::vec3>(2, glm::vec3(1.0f))));
   const double claimed = reflectance_of(scene, scene.materials[0])->whole;
   // A plane that faces down receives pi L times the share reflected of light from everywhere.
   const Sensor sensor{{0, 0, 0.05}, {0, 0, -1}};
-  std::vector<double> values;
-  for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+  const std::vector<double> values = of_seeds([&](std::uint64_t seed) {
     const auto layers = gather_by_paths(scene, std::span(&sensor, 1), {.rays = 8192}, seed).layers;
-    values.push_back(scene.lights[0].power * double{layers.dense().layers[0].illuminance[0]} /
-                     glm::pi<double>());
-  }
+    return scene.lights[0].power * double{layers.dense().layers[0].illuminance[0]} /
+           glm::pi<double>();
+  });
   double mean = 0;
   for (const double value : values) mean += value / 16;
   CHECK(claimed == Approx(mean).epsilon(0.02));
@@ -90,14 +184,6 @@ TEST_CASE("a metal reflects the share that is asked for, keeps its hue and stays
   CHECK(material.specular.g / material.specular.r == Approx(0.75));
 }
 
-namespace {
-
-/// Linear, of a byte of sRGB (IEC 61966-2-1).
-double linear(int byte) {
-  const double value = byte / 255.0;
-  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-}
-
 /// A texture of 16 x 16 texels: white for nothing, with a bright square at its top left and a
 /// darker one beside it; three square metres show the bright one, one the darker.
 Scene atlas() {
@@ -107,7 +193,7 @@ Scene atlas() {
     for (std::size_t x = 4; x < 8; ++x) texels[16 * y + x] = {90, 90, 90, 255};
   }
   SceneBuilder builder("atlas");
-  Material material = diffuse(glm::vec3(1.0f));
+  Material material = diffuse(1.0f);
   material.diffuse_texture = builder.add(Texture("atlas", 16, 16, texels));
   const std::uint32_t number = builder.add(material);
   const auto square = [&](const glm::vec3& origin, float width, float u) {
@@ -130,8 +216,6 @@ Scene atlas() {
   return builder.build();
 }
 
-}  // namespace
-
 TEST_CASE("a texture reflects what its surface shows of it, by area") {
   Scene scene = atlas();
   const double mean = (3 * linear(188) + linear(90)) / 4;
@@ -142,14 +226,14 @@ TEST_CASE("a texture reflects what its surface shows of it, by area") {
 }
 
 TEST_CASE("a black material becomes grey, and glass has no reflectance") {
-  Scene scene = wide_plate(diffuse(glm::vec3(0.0f)));
+  Scene scene = wide_plate(diffuse(0.0f));
   REQUIRE(scene::set_reflectance(scene, scene.materials[0], 0.3));
   CHECK(scene.materials[0].diffuse == glm::vec3(scene.materials[0].diffuse.r));
   CHECK(reflectance_of(scene, scene.materials[0])->whole == Approx(0.3));
-  Scene pane = wide_plate(test::glass(1.5f));
+  Scene pane = wide_plate(glass(1.5f));
   CHECK_FALSE(reflectance_of(pane, pane.materials[0]));
   CHECK_FALSE(scene::set_reflectance(pane, pane.materials[0], 0.3));
-  Scene silver = wide_plate(test::mirror(glm::vec3(0.9f)));
+  Scene silver = wide_plate(mirror(0.9f));
   REQUIRE(scene::set_reflectance(silver, silver.materials[0], 0.6));
   CHECK(silver.materials[0].specular.r == Approx(0.6f));
 }
@@ -179,4 +263,5 @@ TEST_CASE("glass lets through what is asked for, of one sheet, of two, and of a 
         Approx(1000 * share / defaults::lumen_per_watt).epsilon(0.002));
 }
 
+}  // namespace
 }  // namespace photile::test

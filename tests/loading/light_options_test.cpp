@@ -1,7 +1,12 @@
 // Which lights share a layer: the file's groups and those that the user asks for.
 #include <catch2/catch.hpp>
+#include <tuple>
 
+#include "flat_picture.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
+#include "photile/limits.hpp"
+#include "scene/light_emission.hpp"
 #include "scene_files.hpp"
 
 namespace photile::test {
@@ -38,8 +43,6 @@ std::vector<std::string> groups_of(const Scene& scene) {
 }
 
 using Names = std::vector<std::string>;
-
-}  // namespace
 
 TEST_CASE("photile_group among the extras of a node or of a light puts the light into a group") {
   nlohmann::json document = three_lamps();
@@ -148,4 +151,104 @@ TEST_CASE("lights of a group that is off share it equally") {
   for (const double fraction : light_groups_of(scene).fraction) CHECK(fraction == Approx(1.0 / 3));
 }
 
+// Colours of light by temperature, against published chromaticities, and the greatest power.
+
+using Catch::Contains;
+using scene::chromaticity_of_temperature;
+using scene::color_of_temperature;
+
+TEST_CASE("chromaticities are those that are published") {
+  // CIE standard illuminants A, D55, D65 and D75; the Planckian locus of Wyszecki and Stiles.
+  for (const auto& [kelvin, x, y] :
+       {std::tuple{2855.5, 0.44758, 0.40745}, std::tuple{5503.0, 0.33243, 0.34744},
+        std::tuple{6504.0, 0.31272, 0.32903}, std::tuple{7504.0, 0.29903, 0.31488},
+        std::tuple{2000.0, 0.52669, 0.41331}, std::tuple{3000.0, 0.43693, 0.40407},
+        std::tuple{4000.0, 0.38045, 0.37675}}) {
+    const glm::dvec2 found = chromaticity_of_temperature(kelvin);
+    CAPTURE(kelvin);
+    CHECK(found.x == Approx(x).margin(4e-4));
+    CHECK(found.y == Approx(y).margin(4e-4));
+  }
+}
+
+TEST_CASE("6504 K is white, 2700 K is warm, and luminances are 1") {
+  const glm::dvec3 white = color_of_temperature(6504);
+  CHECK(white.r == Approx(1).margin(0.005));
+  CHECK(white.g == Approx(1).margin(0.005));
+  CHECK(white.b == Approx(1).margin(0.005));
+  double before = 1e9;
+  for (double kelvin = 1000; kelvin <= 40'000; kelvin *= 1.05) {
+    const glm::dvec3 color = color_of_temperature(kelvin);
+    CHECK(luminance(color) == Approx(1));
+    CHECK(color.b >= 0);
+    CHECK(color.r < before);  // bluer and bluer
+    before = color.r;
+  }
+}
+
+TEST_CASE("photile_kelvin and the option of the library colour a light and keep its flux") {
+  nlohmann::json document = square_document();
+  document["nodes"][0]["extras"]["photile_kelvin"] = 2700;
+  const Scene warm = load_gltf(document);
+  const Scene plain = load_gltf(square_document());
+  CHECK(glm::distance(warm.lights.at(0).color, glm::vec3(color_of_temperature(2700))) < 1e-6f);
+  CHECK(warm.lights[0].power == plain.lights.at(0).power);
+  SceneLoadOptions options;
+  options.temperatures.push_back(LightTemperature::parse("panel=4000K"));
+  const Scene changed = load_gltf(document, options);
+  CHECK(glm::distance(changed.lights.at(0).color, glm::vec3(color_of_temperature(4000))) < 1e-6f);
+
+  options.temperatures = {LightTemperature::parse("lamp=4000")};
+  CHECK_THROWS_WITH(load_gltf(document, options), Contains("there is 'panel'"));
+  document["nodes"][0]["extras"]["photile_kelvin"] = 5;
+  CHECK(warns(load_gltf(document), {"'panel'", "photile_kelvin"}));
+}
+
+TEST_CASE("texts of temperatures are checked") {
+  CHECK(LightTemperature::parse("a=b=2700K").light == "a=b");
+  CHECK(LightTemperature::parse("lamp=2700").kelvin == 2700);
+  for (const char* text : {"", "lamp", "lamp=", "=2700", "lamp=warm", "lamp=999", "lamp=40001",
+                           "lamp=2700KK", "lamp=nan"}) {
+    CAPTURE(text);
+    CHECK_THROWS_AS(LightTemperature::parse(text), UsageError);
+  }
+}
+
+// Lights of more power than floats can carry are refused by name, when they are loaded or changed.
+
+const std::string lit_square = unit_square + "o panel\nusemtl lamp\nf 1 2 3 4\n";
+
+std::string mtl_with(const std::string& emission) {
+  return "newmtl lamp\nKd 0 0 0\nKe " + emission + "\n";
+}
+
+std::string refusal_of(const std::string& emission, const SceneLoadOptions& options = {}) {
+  return input_error_of([&] { load_obj(lit_square, mtl_with(emission), options); });
+}
+
+TEST_CASE(
+    "an environment beyond floats is refused by its file, one of too much power by its light") {
+  const SceneFolderOnDisk folder;
+  write_exr(folder.path / "sky.exr", flat_picture(4, 2, 3e38f));
+  SceneLoadOptions options;
+  options.environment.file = folder.path / "sky.exr";
+  options.environment.scale = 2;
+  CHECK_THAT(refusal_of("1 1 1", options),
+             Contains("sky.exr") && Contains("8 of its 8 texels") && !Contains("scene.obj"));
+  options.environment.scale = 1;
+  CHECK_THAT(refusal_of("1 1 1", options), Contains("sky.exr: light 'environment'") &&
+                                               Contains("1e+30") && !Contains("scene.obj"));
+}
+
+TEST_CASE("a light is not turned up beyond the greatest power") {
+  const Scene scene = load_obj(lit_square, mtl_with("1 1 1"));
+  LightMix mix = LightMix::of(scene, 683);
+  CHECK_THROWS_WITH(change_lights(mix, {{"panel", "x1e31"}}),
+                    Contains("light 'panel'") && Contains("1e+30"));
+  CHECK_THROWS_WITH(change_lights(mix, {{"panel", "2e30"}}), Contains("light 'panel'"));
+  change_lights(mix, {{"panel", "1e30"}});
+  CHECK(mix.lights[0].power == limits::max_light_power);
+}
+
+}  // namespace
 }  // namespace photile::test

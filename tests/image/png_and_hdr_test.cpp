@@ -1,21 +1,17 @@
-// Radiance's pictures that photile writes.
-#include <catch2/catch.hpp>
-#include <fstream>
-#include <glm/gtc/constants.hpp>
+// PNGs and pictures of Radiance that photile writes.
+#include <OpenImageIO/imageio.h>
 
-#include "photile/errors.hpp"
-#include "photile/image.hpp"
-#include "photile/layered_picture.hpp"
-#include "temporary_folder.hpp"
+#include <glm/gtc/constants.hpp>
+#include <limits>
+
+#include "flat_picture.hpp"
+#include "picture_support.hpp"
 
 namespace photile::test {
 namespace {
 
 Image picture_of(int width, int height, float white_luminance) {
-  Image picture;
-  picture.width = width;
-  picture.height = height;
-  for (const char* channel : {"R", "G", "B"}) picture.add(channel);
+  Image picture = flat_picture(width, height);
   picture.numbers["whiteLuminance"] = white_luminance;
   return picture;
 }
@@ -26,8 +22,6 @@ std::string header_of(const std::filesystem::path& file) {
   while (std::getline(stream, line) && !line.empty()) text += line + "\n";
   return text;
 }
-
-}  // namespace
 
 TEST_CASE("a Radiance picture keeps luminance: 179 times the bright of its primaries") {
   const float white = GENERATE(1.0f, 683.0f);
@@ -86,11 +80,49 @@ TEST_CASE("the view of a Radiance picture is the camera's") {
 }
 
 TEST_CASE("a picture of unknown units is not written in Radiance's") {
-  Image picture = picture_of(2, 2, 1);
-  picture.numbers.clear();
   const TemporaryFolder folder;
-  CHECK_THROWS_AS(write_hdr(folder.path / "a.hdr", picture), InputError);
+  CHECK_THROWS_AS(write_hdr(folder.path / "a.hdr", flat_picture(2, 2)), InputError);
   CHECK_FALSE(std::filesystem::exists(folder.path / "a.hdr"));
 }
 
+// PNGs.
+
+/// The 8-bit values that a PNG of one row holds.
+std::vector<unsigned char> written_codes(const std::vector<float>& linear) {
+  const TemporaryFolder folder;
+  Image image = flat_picture(static_cast<int>(linear.size()), 1);
+  for (std::vector<float>& channel : image.channels) channel = linear;
+  write_png(folder / "a.png", image);
+  const auto input = OIIO::ImageInput::open((folder / "a.png").string());
+  REQUIRE(input);
+  REQUIRE(input->spec().nchannels == 3);
+  REQUIRE(input->spec().format == OIIO::TypeDesc::UINT8);
+  std::vector<unsigned char> texels(3 * linear.size());
+  REQUIRE(input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, texels.data()));
+  std::vector<unsigned char> codes;
+  for (std::size_t i = 0; i < linear.size(); ++i) {
+    CHECK(texels[3 * i] == texels[3 * i + 1]);
+    CHECK(texels[3 * i] == texels[3 * i + 2]);
+    codes.push_back(texels[3 * i]);
+  }
+  return codes;
+}
+
+TEST_CASE("a PNG holds the codes of its values, and the ends for those outside the range") {
+  using Limits = std::numeric_limits<float>;
+  // IEC 61966-2-1: codes 1 and 254, and 127 beside 128, which meet at 0.21404.
+  const std::vector<unsigned char> codes =
+      written_codes({-1.0f, Limits::quiet_NaN(), -Limits::infinity(), 0.000303527f, 0.2139f,
+                     0.2142f, 0.9911021f, 1.0f, 2.0f, Limits::infinity()});
+  CHECK(codes == std::vector<unsigned char>{0, 0, 0, 1, 127, 128, 254, 255, 255, 255});
+}
+
+TEST_CASE("a PNG has the same bytes each time and names no time") {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.png", "b.png"}) write_png(folder / name, flat_picture(2, 2));
+  CHECK(bytes_of(folder / "a.png") == bytes_of(folder / "b.png"));
+  CHECK(bytes_of(folder / "a.png").find("tIME") == std::string::npos);
+}
+
+}  // namespace
 }  // namespace photile::test
