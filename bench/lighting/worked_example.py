@@ -25,7 +25,7 @@ STEPS = (
          {"dusk.png": "On a summer evening, every lamp on"}, ()),
     Step("How much light is there for reading and work? Points in furniture or just above it are left out.",
          "photile measure living-room.gltf --plane floor+0.75 --clearance 0.1 --maintenance 0.8 "
-         "-s 600 -o report.html -o plan.svg",
+         "-o report.html -o plan.svg",
          {"plan.svg": "Illuminance on the working plane"}, ("working plane", "lux", "all lights")),
     Step("A mood for work after dark: the ceiling panel in neutral white, the floor lamp off.",
          "photile relight room.exr --light daylight=off --light floor_lamp=off "
@@ -39,7 +39,7 @@ STEPS = (
          ("work.exr", "luminance,", "illuminance,")),
     Step("How much light does the working plane get in the evening?",
          f"photile measure living-room.gltf {EVENING} --plane floor+0.75 --clearance 0.1 "
-         "--maintenance 0.8 -s 600 --cb -o evening.svg",
+         "--maintenance 0.8 --cb -o evening.svg",
          {"evening.svg": "Contour bands in the evening"}, ("working plane", "lux", "all lights")),
     Step("Is any reflection more than five times as bright as the mean of the picture?",
          "photile render living-room.gltf --glare glare.png",

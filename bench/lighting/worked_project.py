@@ -50,13 +50,13 @@ STEPS = (
          files={"four.json": FOUR}),
     Step("Are they enough for desks by EN 12464-1 at a maintenance factor of 0.8?",
          f"photile measure office-empty.gltf {SURFACES} --luminaires four.json --plane floor+0.75 --maintenance 0.8 "
-         "--target office-desk -s 750 -o four.svg",
+         "--target office-desk -o four.svg",
          {"four.svg": "Four panels: too little for desks"}, PLANE),
     Step("They are not: the light is uniform, but a sixth short of 500 lux. Six panels, in two rows for separate "
          "switches:",
          files={"lamps.json": SIX}),
     Step("", f"photile measure office-empty.gltf {LAMPS} --plane floor+0.75 --maintenance 0.8 "
-         "--target office-desk -s 750 -o six.svg",
+         "--target office-desk -o six.svg",
          {"six.svg": "Six panels in two rows"}, PLANE),
     Step("That is enough for the whole room at the end of the maintenance cycle, and very uniform.\n\n## With "
          "furniture\n\nThe furnished file has four desks. Their tops are the task area. The surroundings are a "
@@ -98,7 +98,7 @@ STEPS = (
          "report\n\nOne command measures all grids and writes the report. The maintenance factor is given by its "
          "parts:",
          f"photile measure office.gltf {LAMPS} --grid desks.json --walls --ceiling --cylindrical-at floor+1.2 "
-         "--maintenance LLMF=0.92,LSF=1,LMF=0.92,RSMF=0.945 --target office-desk -s auto --picture office.exr "
+         "--maintenance LLMF=0.92,LSF=1,LMF=0.92,RSMF=0.945 --target office-desk --picture office.exr "
          "--include glare.json --include everywhere.json --include year.json "
          "--project 'Office 3.07' --client 'The Client Ltd' --designer 'A. Designer' -o report.html -o report.pdf",
          {"report-1.png": "The first page of report.pdf"}, ("target", *FIGURES)),

@@ -202,13 +202,14 @@ def exit_code(program: str, work: Callable[[], None]) -> int:
     return code
 
 
-def in_child(work: Callable[[], int], crash: str) -> int:
-    """Do work that calls native code of others, which may crash on a damaged file, ask for memory without
-    end, or not hear Ctrl-C: in a process of its own, with at most the memory of the machine and without
-    what native code prints. Returns its exit code.
+def in_child(work: Callable[[], int], crash: str, seconds: int = 3600) -> int:
+    """Do work that calls native code of others, which may crash on a damaged file, ask for memory or time
+    without end, or not hear Ctrl-C: in a process of its own, with at most the memory of the machine and
+    without what native code prints. Returns its exit code.
 
-    work    returns an exit code
-    crash   line to print where the process ends without one, which then is 3
+    work      returns an exit code
+    crash     line to print where the process ends without one, which then is 3
+    seconds   of processor time, at which it is ended
     """
     child = os.fork()
     if child == 0:
@@ -216,6 +217,7 @@ def in_child(work: Callable[[], int], crash: str) -> int:
         try:
             memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
             resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+            resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent hears it
             sys.stderr = os.fdopen(os.dup(2), "w", buffering=1)

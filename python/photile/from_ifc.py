@@ -310,8 +310,8 @@ def main() -> int:
 
     files = ", ".join(map(str, options.ifc))
     return in_child(lambda: exit_code("photile.from_ifc", work),
-                    f"photile.from_ifc: error: {files}: ifcopenshell crashed; the file is damaged, or needs "
-                    "more memory than there is: export it again, or a part of it")
+                    f"photile.from_ifc: error: {files}: ifcopenshell ended without a result; the file is "
+                    "damaged, or needs more memory than there is, or an hour: export it again, or a part of it")
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import sys
 
 import pytest
 
-import photile
+import photile.converters
 
 ifcopenshell = pytest.importorskip("ifcopenshell", reason="no ifcopenshell; cmake/fetch.sh test-packages brings it")
 
@@ -147,3 +147,12 @@ def test_what_cannot_be_converted_is_refused_in_a_line(room):
         assert said in made.stderr and not (room / "out").exists()
     assert converted(room / "room.ifc", "-o", room / "lamp.ies").returncode == 2
     assert (room / "lamp.ies").read_text() == LAMP
+
+
+def test_work_without_end_is_ended(capfd):
+    def turn():
+        while True:
+            pass
+
+    assert photile.converters.in_child(turn, "it took too long", seconds=1) == 3
+    assert capfd.readouterr().err == "it took too long\n"

@@ -56,7 +56,7 @@ def test_grids_of_several_rooms_have_no_room_of_their_own(record):
                                  (3.75, [[-0.5, -0.5], [3.5, 2.5]], False), (0.75, [[3.6, -0.5], [7, 2.5]], False)):
         other["plan"], other["plane"]["origin"][1] = {"room": corners}, height
         page = page_of(record)
-        assert ("<dd>6.0 m2</dd>" in page) == ("16.67 W/m2" in page) == one and "<dd>100 W</dd>" in page
+        assert ("<dd>6.0 m²</dd>" in page) == ("16.67 W/m²" in page) == one and "<dd>100 W</dd>" in page
 
 
 def test_what_is_required_is_judged(record):

@@ -188,6 +188,25 @@ TEST_CASE("beside a stairwell the room is the one in which the point lies") {
   CHECK(room->cut_height() > 2.2);
 }
 
+TEST_CASE("the room is found from half a metre before a window") {
+  SceneBuilder builder;
+  const std::uint32_t white = builder.add(diffuse(0.5f));
+  const glm::vec3 x(4.5f, 0, 0), y(0, 1, 0), z(0, 0, 3);
+  for (const float height : {0.0f, 2.5f}) builder.grid({-0.5f, height, 0}, z, x, 1, white);
+  for (const float end : {0.0f, 3.0f}) builder.grid({-0.5f, 0, end}, x, 2.5f * y, 1, white);
+  builder.grid({4, 0, 0}, 2.5f * y, z, 1, white);
+  builder.grid({0, 0, 0}, y, z, 1, white);         // below the window,
+  builder.grid({0, 2, 0}, 0.5f * y, z, 1, white);  // above it,
+  builder.grid({-0.2f, 1, 0}, y, z, 1, white);     // and its pane
+  const Scene scene = builder.build();
+  const RayScene rays(scene);
+  // The ceiling is looked for at points a fifth of the height aside, too: here in the wall's plane.
+  const auto room = trace::Room::around(rays, trace::PlanAxes(), {0.5, 1.6, 1.5});
+  REQUIRE(room.has_value());
+  CHECK(static_cast<double>(room->positions().size()) * room->cell_area() ==
+        Approx(4 * 3).epsilon(0.1));
+}
+
 TEST_CASE("a room that is open on one side is seen through it, and anything else from above") {
   const int open = GENERATE(-1, 0, 1, 2, 3);  // the wall left out: none, at +z, -z, +x, -x
   SceneBuilder builder;

@@ -18,7 +18,7 @@ import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "publish"))
 import page_test  # noqa: E402
-from page_test import BYTES, SET_POWER, SIZE, channels_of, near, np, photile  # noqa: E402
+from page_test import BASE64, SET_POWER, SIZE, channels_of, near, np, photile  # noqa: E402
 from served import Served  # noqa: E402
 
 MADE = ["--quality", "draft", "--photons", "50k", "-q"]
@@ -27,15 +27,15 @@ EYE, FORWARD = [3, 1.6, 4.5], [0, 0, -1]
 HALF = 2 ** -11
 
 # The exact picture as it is mixed: linear RGB radiance, rows from below.
-RESTING = """
+RESTING = BASE64 + """
 const {gl, rest, unit} = page.renderer;
 const {target, width, height} = rest.light;
 const texels = new Float32Array(4 * width * height);
 gl.bindFramebuffer(gl.FRAMEBUFFER, target);
 gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, texels);
 gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-arguments = [texels.map((value) => value * unit)];
-""" + BYTES
+return base64(texels.map((value) => value * unit));
+"""
 
 
 class Browser(page_test.Browser):

@@ -212,8 +212,10 @@ Camera camera_of(const Scene& scene, const RenderOptions& options) {
 }
 
 Camera opening_camera(const Scene& scene, const RenderOptions& options) {
-  const Camera camera = camera_of(scene, options);
-  return camera.projection == Projection::perspective ? camera : publish::opening_camera(scene);
+  Camera camera = camera_of(scene, options);
+  if (camera.projection != Projection::perspective) return publish::opening_camera(scene);
+  if (!options.eye.empty() || !options.look_at.empty()) camera.name.clear();  // of no camera
+  return camera;
 }
 
 Camera projected(Camera camera, const RenderOptions& options) {

@@ -28,7 +28,7 @@ struct PublishedRoom {
   double relative_error = 0;      ///< ... which all err by this part
   std::vector<Preset> presets;
   SkyHours hours;
-  ToneMapping display;  ///< with its light: of the picture by `photile render` from the first
+  ToneMapping display;  ///< with its light: of the picture by `photile render` from the opening
                         ///< camera, as stops
   std::string title;
   std::string version;

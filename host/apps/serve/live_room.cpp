@@ -79,7 +79,7 @@ LiveRoom::Edition LiveRoom::made(int number, std::shared_ptr<const Scene> scene)
 
 void LiveRoom::make_page() {
   Edition edition = made(1, first_scene_);
-  lower_priority();
+  lower_priority();  // a browser without a graphics chip draws on the same cores
   // The room is seen before its light is computed, which takes all cores.
   const std::lock_guard lock(mutex_);
   photons_.trace(first_scene_, parameters_.render,

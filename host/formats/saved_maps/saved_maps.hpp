@@ -1,5 +1,5 @@
 // Photons and groups in a file, so that the same scene is looked at again without tracing it.
-// The format is docs/reference/saved-maps.md.
+// What has to be equal: docs/reference/saved-maps.md.
 #pragma once
 
 #include <filesystem>

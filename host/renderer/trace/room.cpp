@@ -79,8 +79,9 @@ std::optional<Room> Room::around(const RayScene& rays, const PlanAxes& axes,
   for (const auto& step : steps) {
     const glm::dvec3 direction =
         static_cast<double>(step.x) * axes.right + static_cast<double>(step.y) * axes.ahead;
-    const glm::dvec3 other = point + aside * direction;
-    if (trace::occluded(rays, glm::vec3(point), glm::vec3(other))) continue;
+    const glm::dvec3 other = point + aside * direction, beyond = other + 0.5 * aside * direction;
+    // A point on a wall, or in a window, is no good one, though nothing may hide it.
+    if (trace::occluded(rays, glm::vec3(point), glm::vec3(beyond))) continue;
     if (const auto there = headroom_at(rays, axes, other)) positions.push_back({other, *there});
   }
   std::stable_sort(positions.begin(), positions.end(), [](const Position& a, const Position& b) {
