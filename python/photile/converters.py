@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputError, OutputError, UsageError
+from .report.command import permissions
 
 __all__ = ["Gltf", "exit_code", "in_child", "luminaire_rotation", "matt", "one_line", "unique",
            "write_files"]
@@ -163,7 +164,7 @@ def write_files(contents: Mapping[Path, bytes]) -> None:
                 left_over.callback(Path(temporary).unlink, missing_ok=True)
                 with open(handle, "wb") as stream:
                     stream.write(content)
-                os.chmod(temporary, 0o666 & ~_umask())
+                os.chmod(temporary, permissions(path))
             except OSError as error:
                 raise OutputError(f"{path}: not written: {error.strerror}; name another file") from None
             written.append((temporary, path))
@@ -172,12 +173,6 @@ def write_files(contents: Mapping[Path, bytes]) -> None:
                 os.replace(temporary, path)
             except OSError as error:
                 raise OutputError(f"{path}: not written: {error.strerror}; name another file") from None
-
-
-def _umask() -> int:
-    mask = os.umask(0o077)
-    os.umask(mask)
-    return mask
 
 
 def exit_code(program: str, work: Callable[[], None]) -> int:

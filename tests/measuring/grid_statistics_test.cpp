@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
@@ -355,15 +356,9 @@ TEST_CASE("an escape route needs a lux at each point, and no point of 40 times a
 TEST_CASE("requirements of one's own are values by name") {
   const Requirement own =
       parse_requirement("Em=320,Uo=0.5,Emin=100,Ud=0.2,UGR=22,Ez=75,Ewall=60,Eceiling=40,Ra=90");
-  CHECK(own.mean == 320);
-  CHECK(own.uniformity == 0.5);
-  CHECK(own.least == 100);
-  CHECK(own.diversity == 0.2);
-  CHECK(own.glare == 22);
-  CHECK(own.cylindrical == 75);
-  CHECK(own.wall == 60);
-  CHECK(own.ceiling == 40);
-  CHECK(own.rendering == 90);
+  CHECK(std::vector{own.mean, own.uniformity, own.least, own.diversity, own.glare, own.cylindrical,
+                    own.wall, own.ceiling,
+                    own.rendering} == std::vector<double>{320, 0.5, 100, 0.2, 22, 75, 60, 40, 90});
 }
 
 TEST_CASE("each known row is complete, and its name is its own") {

@@ -6,6 +6,8 @@ import subprocess
 import pytest
 
 import photile
+from photile import converters
+from photile.report import command
 
 COMMAND = os.environ["PHOTILE_COMMAND"]
 
@@ -58,3 +60,11 @@ def test_a_device_that_is_not_there(lamps):
     with pytest.raises(photile.DeviceError, match="no such device"):
         photile.render(lamps, device="no such device")
     assert photile.devices()[0]["name"]
+
+
+@pytest.mark.parametrize("write", [command.write, lambda file, content: converters.write_files({file: content})])
+def test_a_file_that_is_overwritten_keeps_its_permissions(tmp_path, write):
+    file = tmp_path / "private.json"
+    file.touch(0o600)
+    write(file, b"new")
+    assert file.read_bytes() == b"new" and file.stat().st_mode & 0o777 == 0o600

@@ -8,6 +8,7 @@ import json
 import os
 import pathlib
 import re
+import stat
 import sys
 import tempfile
 from collections.abc import Sequence
@@ -59,6 +60,16 @@ def _read(file: str) -> Any:
         raise Failure(INPUT, f"{file}: {getattr(error, 'strerror', None) or error}") from None
 
 
+def permissions(file: pathlib.Path) -> int:
+    """Of what takes a file's place: those of the file, or those of a new one."""
+    try:
+        return stat.S_IMODE(file.stat().st_mode)
+    except OSError:
+        mask = os.umask(0o077)
+        os.umask(mask)
+        return 0o666 & ~mask
+
+
 def write(file: pathlib.Path, content: bytes, make_folder: bool = False) -> None:
     """Writes a file, which gets its name when it is complete."""
     try:
@@ -68,9 +79,7 @@ def write(file: pathlib.Path, content: bytes, make_folder: bool = False) -> None
         try:
             with os.fdopen(descriptor, "wb") as stream:
                 stream.write(content)
-            mask = os.umask(0)
-            os.umask(mask)
-            os.chmod(temporary, 0o666 & ~mask)
+            os.chmod(temporary, permissions(file))
             os.replace(temporary, file)
         except BaseException:
             os.unlink(temporary)
