@@ -105,7 +105,7 @@ MUTANTS = (
            "return part * part;", "return 1;",
            (("cache", "gathered nodes: a wall is dark below*"),)),
     Mutant("light samples of near lights that are not weighed", "host/renderer/trace/light_clusters.cpp",
-           "(1 - everywhere) * probabilities.up_to[i] / weights", "(1 - everywhere) * share",
+           "(1 - everywhere) * probabilities.up_to[i] / weights", "(1 - everywhere) * fraction",
            (("trace", "light clusters: light samples*"),)),
     Mutant("one light's random numbers for all", "host/renderer/trace/photon_tracer.cpp",
            "random(setup.parameters->seed, path, setup.light)",
@@ -225,7 +225,7 @@ MUTANTS = (
            "  Parts all = build_maps(std::move(traced.photons), plan_.used().kernel,",
            "  traced.caustics = traced.photons;\n"
            "  Parts all = build_maps(std::move(traced.photons), plan_.used().kernel,",
-           (("cache", "gathering: the light of a caustic*"),)),
+           (("cache", "gathering: a picture has*"),)),
     Mutant("radiance seen through water as bright as in it", "host/renderer/trace/scatter.cpp",
            "if (material.thin) return 1;", "return 1;",
            (("render", "a pool shows*"), ("trace", "A lamp under water*"))),

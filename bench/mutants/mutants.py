@@ -159,7 +159,8 @@ def output_of(command, folder):
 class Builder:
     """Programs of tests with a file of the host changed, from the objects of a finished build."""
 
-    LIBRARY = tuple(f"host/{room}/CMakeFiles/photile_{room}.dir/" for room in ("renderer", "formats", "lighting"))
+    LIBRARY = tuple(f"host/{room}/CMakeFiles/photile_{room}.dir/"
+                    for room in ("renderer", "formats", "pictures", "lighting"))
     # What programs are linked from: the library, and what of host/apps stands on it.
     ARCHIVES = (*LIBRARY, *(f"host/{folder}.dir/" for folder in (
         "lighting/CMakeFiles/photile_report", "apps/CMakeFiles/photile_tools",
@@ -176,11 +177,18 @@ class Builder:
 
     def objects_that_read(self, file, folders):
         """The archives' objects, and those of the tests of folders, that a file is part of."""
-        text = output_of(["ninja", "-t", "deps"], self.build)
-        path = f"    {ROOT / file}\n"
-        readers = {block.split(":", 1)[0] for block in text.split("\n\n") if path in block + "\n"}
+        readers, object_ = set(), None
+        for line in output_of(["ninja", "-t", "deps"], self.build).splitlines():
+            if not line.startswith(" "):
+                object_ = line.split(":", 1)[0]
+            # A cache of compilers may state paths from the build folder on.
+            elif line.endswith(file) and (self.build / line.strip()).resolve() == ROOT / file:
+                readers.add(object_)
         wanted = (*self.ARCHIVES, *(f"tests/{folder}/" for folder in folders))
-        return sorted(object_ for object_ in readers & set(self.commands) if object_.startswith(wanted))
+        found = sorted(object_ for object_ in readers & set(self.commands) if object_.startswith(wanted))
+        if not found:
+            raise CannotRun(f"no object of {self.build} was compiled from {file}")
+        return found
 
     def compile(self, object_):
         """The object again, from the copies; returns its path."""

@@ -11,6 +11,7 @@
 #include "photile/errors.hpp"
 #include "photile/scene.hpp"
 #include "render/path_estimate.hpp"
+#include "render/pictures.hpp"
 #include "statistical_tests.hpp"
 #include "trace/emission_sampling.hpp"
 #include "validation/analytic_cases.hpp"
@@ -285,6 +286,28 @@ TEST_CASE("gathering: the light of a caustic arrives once") {
   CAPTURE(error_over_stated);
   CHECK(error_over_stated < 1.25);
   CHECK(error_over_stated > 0.4);
+}
+
+TEST_CASE("gathering: a picture has direct light once, and the caustic beside it once") {
+  SceneBuilder builder;
+  builder.grid({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, 2, builder.add(diffuse(0.0f)));
+  builder.grid({-9, -9, 1.2f}, {0, 18, 0}, {18, 0, 0}, 1, builder.add(mirror({1, 1, 1})));
+  builder.add(point_light("lamp", {0.8f, 0, 1}));
+  RenderParameters parameters = small_picture(60'000, 12, 12);
+  parameters.light_maps = LightMapMode::on;
+  parameters.light_map_rays = 64;
+  const auto picture = render(builder.build(), above(0, 0, 1.1, 0.6), device(), parameters);
+  const std::vector<float>& found = picture.layers.layers[0].illuminance;
+  double sum = 0, truth = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double x = (static_cast<double>(i % 12) + 0.5) / 20 - 1.1;
+    const double y = (static_cast<double>(i / 12) + 0.5) / 20 - 0.3;
+    sum += double{found[i]};
+    for (const double height : {1.0, 1.4}) {
+      truth += height / (4 * pi * std::pow(x * x + y * y + height * height, 1.5));
+    }
+  }
+  CHECK(sum / truth == Approx(1).margin(0.05));
 }
 
 TEST_CASE("gathering: a caustic ends where the image of its mirror ends") {

@@ -251,7 +251,7 @@ bool has_shared_scenes() {
 TEST_CASE("areas at corners, edges and T-junctions of the bundled rooms are the oracle's") {
   const char* file = GENERATE("cornell-box/cornell-box.obj", "living-room/living-room.gltf");
   CAPTURE(file);
-  check_told(check_some_shares(load_scene(source_folder() / "scenes" / file), 20'000, 40, 40));
+  check_told(check_some_shares(load_scene(source_folder() / "scenes" / file), 20'000, 80, 40));
 }
 
 TEST_CASE("hits a rounding beyond an edge or a corner count as on it, far off along any axis") {
