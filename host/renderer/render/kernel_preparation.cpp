@@ -109,7 +109,8 @@ void compile_usual_kernels(Device& device, Progress& progress) {
     for (SceneNeeds needs : surfaces) {
       for (needs.light_count = 1; needs.light_count <= max_dense_lights; ++needs.light_count) {
         progress.throw_if_cancelled();
-        prepare(device, sample_of(needs, true, parameters.neighbours), parameters, true, false);
+        prepare(device, sample_of(needs, true, parameters.neighbours), parameters, true,
+                needs.glossy);
         progress.advance(1);
       }
     }
