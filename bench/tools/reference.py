@@ -9,7 +9,7 @@ Between <!-- begin: NAME --> and <!-- end --> of a page stands, by NAME:
     photile options --help              those that commands share with photile render
     photile settings --markdown         what --set sets; photile qualities --markdown: what --quality sets
     docs/examples/FILE                  that program
-    host/.../requirements.cpp           the targets of EN 12464-1
+    host/.../en12464_1.csv              the targets of that standard
     host/apps/command/command_line.hpp  the exit codes
 
 Without --write a part that differs, and a command that has none, is a fault.
@@ -27,7 +27,10 @@ COMMON = ("Picture", "Photons", "Estimate", "Settings", "Scene", "Lights", "Devi
 COLUMN = 30  # of the help, where what an option does begins
 WIDEST = 40  # of names that stay on one line
 DEFAULT = re.compile(r"=([a-z0-9.][^|=]*)$")
-TARGET = re.compile(r'\{"([a-z-]+)", "table (\d+)", "([^"]+)",\s*([\d., \n]+?)(,\s*unconfirmed)?\}')
+# The tables of EN 12464-1:2021 from each number on.
+SECTIONS = {9: "Traffic zones", 10: "Rest and sanitation", 11: "Control rooms", 12: "Stores and logistics",
+            14: "Industry and crafts", 34: "Offices", 35: "Shops", 36: "Public places", 42: "Indoor car parks",
+            43: "Education", 45: "Health care"}
 EXIT_CODE = re.compile(r"^  (\w+) = (\d+), +///< (.*)$", re.MULTILINE)
 
 
@@ -113,6 +116,21 @@ def program_text(photile, words):
     return "\n".join(["| command | what it does |", "|---|---|", *rows])
 
 
+def targets_text(text):
+    """The rows of a table of targets, with a line above those of each section."""
+    heading, *rows = [line.split(";") for line in text.removeprefix('R"(').splitlines()[:-1]]
+    lines = ["<!-- not measured -->", "", f"| {' | '.join(heading[:-1])} |", "|---|--:|---|" + "--:|" * 7]
+    section = None
+    for row in rows:
+        name, *values, confirmed = row + [""] * (len(heading) - len(row))
+        of = max(first for first in SECTIONS if first <= int(values[0]))
+        if of != section:
+            section = of
+            lines.append(f"| **{SECTIONS[of]}** |" + " |" * len(values))
+        lines.append(f"| `{name}`{'' if confirmed else '*'} | {' | '.join(values)} |")
+    return "\n".join(lines)
+
+
 def source_text(file):
     text = file.read_text(encoding="utf-8")
     if file.parent.name == "examples":
@@ -120,12 +138,7 @@ def source_text(file):
     if file.name == "command_line.hpp":
         rows = [f"| {code} | {name} | {meaning} |" for name, code, meaning in EXIT_CODE.findall(text)]
         return "\n".join(["| code | name | meaning |", "|--:|---|---|", *rows])
-    lines = ["<!-- not measured -->", "", "| name | table | activity | Em | Uo | UGR | Ra | Ez | Ewall | Eceiling |",
-             "|---|--:|---|" + "--:|" * 7]
-    for name, of_standard, activity, numbers, unconfirmed in TARGET.findall(text):
-        values = " | ".join(number.strip() for number in numbers.split(","))
-        lines.append(f"| `{name}`{'*' if unconfirmed else ''} | {of_standard} | {activity} | {values} |")
-    return "\n".join(lines)
+    return targets_text(text)
 
 
 def main():

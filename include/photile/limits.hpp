@@ -117,6 +117,7 @@ inline constexpr std::uint64_t max_input_text_bytes = 256ull << 20;
 
 // Measuring
 inline constexpr std::uint64_t max_sensors = 1'000'000;
+inline constexpr std::size_t max_outline_corners = 1'000;  ///< each point is compared with each
 /// Hours times points of a year of daylight: 4 bytes each, twice.
 inline constexpr std::uint64_t max_profile_values = 250'000'000;
 inline constexpr int max_repeats = 1'000;  ///< each traces its own photons

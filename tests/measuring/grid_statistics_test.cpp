@@ -307,6 +307,7 @@ TEST_CASE("walls, ceilings, cylinders and surroundings have requirements of thei
   CHECK(judge(grid(GridRole::background, even), desk)[0].required == 100);
   CHECK(judge(grid(GridRole::background, even), desk)[1].required == 0.10);
   CHECK(judge(grid(GridRole::other, even), desk).empty());
+  CHECK(judge(grid(GridRole::wall, even), parse_requirement("bookshelves")).empty());
   CHECK(mean_of_surroundings(750) == 500);
   CHECK(mean_of_surroundings(300) == 200);
   CHECK(mean_of_surroundings(200) == 150);
@@ -361,15 +362,18 @@ TEST_CASE("requirements of one's own are values by name") {
                     own.rendering} == std::vector<double>{320, 0.5, 100, 0.2, 22, 75, 60, 40, 90});
 }
 
-TEST_CASE("each known row is complete, and its name is its own") {
+TEST_CASE("each known row is of a table, within the ranges of the standard, and has its own name") {
   for (const Requirement& row : known_requirements()) {
     CAPTURE(row.name);
     CHECK(parse_requirement(row.name).what == row.what);
     if (row.is_direct) continue;
-    CHECK(row.mean > 0);
-    CHECK(row.uniformity >= 0.4);
-    CHECK(row.glare >= 16);
-    CHECK(row.wall >= row.ceiling);
+    CHECK_THAT(row.reference, Catch::StartsWith("EN 12464-1:2021, table "));
+    CHECK((row.mean >= 75 && row.mean <= 1500));
+    CHECK((row.uniformity >= 0.4 && row.uniformity <= 0.7));
+    CHECK((row.glare == 0 || (row.glare >= 16 && row.glare <= 28)));
+    CHECK((row.rendering >= 40 && row.rendering <= 90));
+    CHECK(row.cylindrical >= row.wall);
+    CHECK((row.wall == 0 || row.wall >= row.ceiling));
   }
 }
 

@@ -1,6 +1,9 @@
 // Files that say where to measure.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
 
 #include "measuring/sensor_grid.hpp"
@@ -70,6 +73,44 @@ TEST_CASE("a list of planes, with columns and rows or the spacing of the standar
   CHECK(grids[0].sensors.size() == 64);
   CHECK(grids[0].sensors[0].normal == glm::dvec3(0, 1, 0));
   CHECK(grids[1].sensors.size() == 6);
+}
+
+/// A desk with two wings, 0.8 m deep: 2 x 0.8 + 0.8 x 0.8 m2.
+constexpr const char* desk_with_wings =
+    R"("origin": [1, 0.75, 3], "u": [2, 0, 0], "v": [0, 0, -1.6],
+    "outline": [[0, 0], [2, 0], [2, 0.8], [0.8, 0.8], [0.8, 1.6], [0, 1.6]])";
+
+TEST_CASE("an outline keeps the points within it, whose cells have its area") {
+  const auto desk = planes_in(fmt::format(R"({{{}, "spacing": 0.1}})", desk_with_wings));
+  REQUIRE(desk.size() == 1);
+  CHECK(desk[0].sensors.size() == 224);
+  for (const Sensor& sensor : desk[0].sensors) {
+    CHECK((sensor.position.x < 1.8 || sensor.position.z > 2.2));
+  }
+  // No middle lies on the diagonal, about which the cells are symmetric: half of 20 x 16.
+  const auto half = planes_in(R"({"origin": [0,0,0], "u": [0,2,0], "v": [1.6,0,0],
+      "outline": [[0,0], [0,1.6], [2,0], [0,0]], "spacing": 0.1})");
+  CHECK(half[0].sensors.size() == 160);
+}
+
+TEST_CASE("surroundings and background of an outline are bands of their width around it") {
+  const auto grids = planes_in(fmt::format(
+      R"({{{}, "spacing": 0.02, "surroundings": 0.3, "background": 0.4}})", desk_with_wings));
+  REQUIRE(grids.size() == 3);
+  // Strips along 7.2 m of border, quarters of a disc at five corners; two strips overlap at the
+  // sixth.
+  const double cell = 0.02 * 0.02;
+  CHECK(static_cast<double>(grids[1].sensors.size()) * cell ==
+        Approx(7.2 * 0.3 + (1.25 * glm::pi<double>() - 1) * 0.3 * 0.3).epsilon(0.02));
+  const auto from_wing = [](const Sensor& sensor, double width, double depth) {
+    const glm::dvec2 at(sensor.position.x - 1, 3 - sensor.position.z), size(width, depth);
+    return glm::length(glm::max(glm::max(-at, at - size), 0.0));
+  };
+  CHECK(grids[2].sensors.size() > 20);
+  for (const Sensor& sensor : grids[2].sensors) {
+    const double gap = std::min(from_wing(sensor, 2, 0.8), from_wing(sensor, 0.8, 1.6));
+    CHECK((gap >= 0.3 && gap <= 0.7));
+  }
 }
 
 TEST_CASE("a right angle is one to a millionth, however long its sides are") {

@@ -56,9 +56,9 @@ std::vector<measuring::SensorGrid> grids_at(const PlaceOptions& options, const S
   for (const auto& file : options.planes) {
     glm::dvec3 task(0.0);
     for (auto& grid : measuring::read_planes(file)) {
-      const measuring::PlaneLayout& layout = *grid.layout;
       if (grid.role == measuring::GridRole::task) {
-        task = layout.origin + 0.5 * (layout.u + layout.v) + 0.05 * layout.normal();  // off a table
+        const Sensor& sensor = grid.sensors[grid.sensors.size() / 2];
+        task = sensor.position + 0.05 * sensor.normal;  // off a table
       }
       if (grid.role == measuring::GridRole::background) keep_in_room(scene, task, grid);
       if (!grid.sensors.empty()) grids.push_back(std::move(grid));
@@ -90,8 +90,7 @@ namespace {
 std::string reasons_of(const measuring::SensorGrid& grid, const measuring::CountedReasons& known) {
   std::string text;
   for (const auto& [reason, count] : measuring::counted_blanks(grid)) {
-    const auto is_same = [&](const auto& other) { return other.first == reason; };
-    if (std::any_of(known.begin(), known.end(), is_same)) continue;
+    if (std::ranges::count(known, reason, &measuring::CountedReasons::value_type::first)) continue;
     text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", reason, count);
   }
   return text;
@@ -106,12 +105,8 @@ std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
     if (!grid.remark.empty()) progress.warn(fmt::format("{}: {}", grid.name, grid.remark));
     const std::size_t all = grid.sensors.size();
     const measuring::CountedReasons known = measuring::counted_blanks(grid);
-    std::optional<glm::dvec3> inside;
-    if (!options.inside.empty()) {
-      inside = glm::dvec3(options.inside[0], options.inside[1], options.inside[2]);
-    }
-    const std::size_t blank =
-        measuring::leave_out_furniture(scene, options.clearance, grid, inside);
+    const std::size_t blank = measuring::leave_out_furniture(scene, options.clearance, grid,
+                                                             plane_at(options, "floor").inside);
     if (grid.sensors.empty() && !(options.clearance > 0)) {
       throw UsageError(fmt::format(
           "{}: all {} points lie in objects or on surfaces; give another height or position",

@@ -132,11 +132,10 @@ Measurement measurement_of(std::vector<SensorGrid> grids, const Readings& readin
 
 void mark_dark_points(Measurement& measurement) {
   const auto is_dark = [](const Measured& measured) { return measured.value == 0; };
-  const bool any_light =
-      std::any_of(measurement.begin(), measurement.end(), [&](const GridValues& grid) {
-        const auto& sensors = grid.total().sensors;
-        return !std::all_of(sensors.begin(), sensors.end(), is_dark);
-      });
+  const bool any_light = std::ranges::any_of(measurement, [&](const GridValues& grid) {
+    const auto& sensors = grid.total().sensors;
+    return !std::ranges::all_of(sensors, is_dark);
+  });
   if (!any_light) return;
   for (GridValues& values : measurement) {
     const auto& sensors = values.total().sensors;
@@ -154,11 +153,11 @@ std::vector<std::string> doubts_of(const Measurement& measurement,
   for (const GridValues& grid : measurement) {
     const auto& sensors = grid.total().sensors;
     points += sensors.size();
-    dark += static_cast<std::size_t>(std::count_if(sensors.begin(), sensors.end(),
-                                                   [](const Measured& m) { return m.value == 0; }));
+    dark += static_cast<std::size_t>(
+        std::ranges::count_if(sensors, [](const Measured& m) { return m.value == 0; }));
   }
-  const bool any_on = std::any_of(lights.begin(), lights.end(),
-                                  [](const MixedLight& light) { return light.power > 0; });
+  const bool any_on =
+      std::ranges::any_of(lights, [](const MixedLight& light) { return light.power > 0; });
   if (dark > 0 && dark < points) {
     lines.push_back(fmt::format(
         "{} of {} points have no light at all; they may lie outside the room or inside objects",
@@ -171,16 +170,13 @@ std::vector<std::string> doubts_of(const Measurement& measurement,
   }
   std::vector<bool> reaches;
   for (const MixedLight& light : lights) {
-    reaches.push_back(
-        std::any_of(measurement.begin(), measurement.end(), [&](const GridValues& grid) {
-          return std::any_of(grid.lights.begin(), grid.lights.end(),
-                             [&](const LightValues& values) {
-                               // With one light alone its values are those of all together.
-                               return (values.light == light.name || grid.lights.size() == 1) &&
-                                      std::any_of(values.sensors.begin(), values.sensors.end(),
-                                                  [](const Measured& m) { return m.value > 0; });
-                             });
-        }));
+    reaches.push_back(std::ranges::any_of(measurement, [&](const GridValues& grid) {
+      return std::ranges::any_of(grid.lights, [&](const LightValues& values) {
+        // With one light alone its values are those of all together.
+        return (values.light == light.name || grid.lights.size() == 1) &&
+               std::ranges::any_of(values.sensors, [](const Measured& m) { return m.value > 0; });
+      });
+    }));
   }
   for (std::string& line : lights_that_reach_nothing(lights, reaches, "point")) {
     lines.push_back(std::move(line));
@@ -306,8 +302,8 @@ Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, co
 std::vector<Portal> portals_of_grids(const Scene& scene, std::span<const SensorGrid> grids,
                                      std::span<const std::string> asked) {
   constexpr double above = 0.01;  // metres: a sensor may lie on a surface
-  const bool lit_from_beyond = std::any_of(scene.lights.begin(), scene.lights.end(),
-                                           [](const Light& light) { return light.is_distant(); });
+  const bool lit_from_beyond =
+      std::ranges::any_of(scene.lights, [](const Light& light) { return light.is_distant(); });
   if (!lit_from_beyond) return {};
   std::vector<glm::dvec3> points;
   for (const Sensor& sensor : sensors_of(scene, grids))
@@ -320,11 +316,10 @@ std::size_t covered_sensors(const Scene& scene, std::span<const SensorGrid> grid
   const RayScene rays(scene);
   const trace::FlushDenormals flush_denormals;
   const std::vector<Sensor> sensors = sensors_of(scene, grids);
-  return static_cast<std::size_t>(
-      std::count_if(sensors.begin(), sensors.end(), [&](const Sensor& sensor) {
-        return trace::occluded(rays, glm::vec3(sensor.position + 1e-4 * sensor.normal),
-                               glm::vec3(sensor.position + near * sensor.normal));
-      }));
+  return static_cast<std::size_t>(std::ranges::count_if(sensors, [&](const Sensor& sensor) {
+    return trace::occluded(rays, glm::vec3(sensor.position + 1e-4 * sensor.normal),
+                           glm::vec3(sensor.position + near * sensor.normal));
+  }));
 }
 
 }  // namespace photile::measuring

@@ -1,10 +1,12 @@
 #include "measuring/requirements.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "common/ascii_text.hpp"
@@ -18,91 +20,59 @@ constexpr double uniformity_of_surfaces = 0.10;      // walls, ceilings, cylindr
 constexpr double uniformity_of_surroundings = 0.40;  // of the immediate ones
 constexpr double background_share = 1.0 / 3;         // of the immediate surroundings' mean
 
-constexpr bool unconfirmed = false;
-
-/// Required values; the modified ones may be asked for by hand. Where they were confirmed:
-/// docs/reference/targets.md.
-const std::array<Requirement, 17> rows{{
-    {"corridor", "table 9", "circulation areas and corridors", 100, 0.40, 28, 40, 50, 50, 30},
-    {"stairs", "table 9", "stairs, escalators and travelators", 100, 0.40, 25, 40, 50, 50, 30},
-    {"canteen", "table 10", "canteens and pantries", 200, 0.40, 22, 80, 75, 75, 50, unconfirmed},
-    {"washroom", "table 10", "cloakrooms, washrooms and toilets", 200, 0.40, 25, 80, 75, 75, 50},
-    {"store-room", "table 12", "store and stockrooms", 100, 0.40, 25, 80, 50, 50, 30, unconfirmed},
-    {"office-filing", "table 34", "filing and copying", 300, 0.40, 19, 80, 100, 100, 75,
-     unconfirmed},
-    {"office-desk", "table 34", "writing, typing, reading and data processing", 500, 0.60, 19, 80,
-     150, 150, 100},
-    {"office-drawing", "table 34", "technical drawing", 750, 0.70, 16, 80, 150, 150, 100,
-     unconfirmed},
-    {"office-cad", "table 34", "CAD workstations", 500, 0.60, 19, 80, 150, 150, 100, unconfirmed},
-    {"meeting-room", "table 34", "conference and meeting rooms", 500, 0.60, 19, 80, 150, 150, 100},
-    {"conference-table", "table 34", "conference tables", 500, 0.60, 19, 80, 150, 150, 100},
-    {"reception-desk", "table 34", "reception desks", 300, 0.60, 22, 80, 100, 100, 75, unconfirmed},
-    {"archive", "table 34", "archives", 200, 0.40, 25, 80, 75, 75, 50, unconfirmed},
-    {"classroom", "table 44", "classrooms, general activities", 500, 0.60, 19, 80, 150, 150, 100,
-     unconfirmed},
-    {"school-entrance", "table 44", "entrance halls of schools", 200, 0.40, 22, 80, 75, 75, 50},
-    {"school-corridor", "table 44", "corridors of schools", 100, 0.40, 25, 80, 50, 50, 30},
-    {"school-stairs", "table 44", "stairs of schools", 150, 0.40, 25, 80, 50, 50, 30},
-}};
-
-/// Emergency lighting. A tenth of what a task with a high risk needs is more than 15 lux where that
-/// is above 150.
-const std::array<Requirement, 3> emergency_rows{{
-    {.name = "escape-route",
-     .reference = "4.2",
-     .what = "centre line of an escape route",
-     .least = 1,
-     .diversity = 1.0 / 40,
-     .is_direct = true},
-    {.name = "open-area",
-     .reference = "4.3",
-     .what = "open area, against panic",
-     .least = 0.5,
-     .diversity = 1.0 / 40,
-     .is_direct = true},
-    {.name = "high-risk-task",
-     .reference = "4.4",
-     .what = "task area with a high risk",
-     .mean = 15,
-     .uniformity = 0.1,
-     .is_direct = true},
-}};
-
-const std::vector<Requirement>& all_rows() {
-  static const std::vector<Requirement> all = [] {
-    std::vector<Requirement> list(rows.begin(), rows.end());
-    for (Requirement& row : list) {
-      row.reference = "EN 12464-1:2021, " + row.reference + ", required values";
-      if (!row.confirmed) row.reference += " (not confirmed: check them)";
-    }
-    for (Requirement row : emergency_rows) {
-      row.reference = "EN 1838:2013, " + row.reference + ", direct light alone";
-      list.push_back(std::move(row));
-    }
-    return list;
-  }();
-  return all;
-}
-
-std::string known_names() {
-  std::string names;
-  for (const Requirement& row : all_rows()) names += (names.empty() ? "" : ", ") + row.name;
-  return names;
-}
-
-/// The field that a word of user-defined requirements sets; null where there is none.
+/// The field that a word of a table or of user-defined requirements sets; null where there is none.
 double* field_of(Requirement& requirement, std::string_view word) {
-  if (word == "Em") return &requirement.mean;
-  if (word == "Uo") return &requirement.uniformity;
-  if (word == "Emin") return &requirement.least;
-  if (word == "Ud") return &requirement.diversity;
-  if (word == "UGR") return &requirement.glare;
-  if (word == "Ra") return &requirement.rendering;
-  if (word == "Ez") return &requirement.cylindrical;
-  if (word == "Ewall") return &requirement.wall;
-  if (word == "Eceiling") return &requirement.ceiling;
-  return nullptr;
+  using Field = std::pair<std::string_view, double*>;
+  const std::array fields{
+      Field{"Em", &requirement.mean},         Field{"Uo", &requirement.uniformity},
+      Field{"Emin", &requirement.least},      Field{"Ud", &requirement.diversity},
+      Field{"UGR", &requirement.glare},       Field{"Ra", &requirement.rendering},
+      Field{"Ez", &requirement.cylindrical},  Field{"Ewall", &requirement.wall},
+      Field{"Eceiling", &requirement.ceiling}};
+  const auto found = std::ranges::find(fields, word, &Field::first);
+  return found == fields.end() ? nullptr : found->second;
+}
+
+// Files that are raw string literals: a heading, then a row a line. Where a cell is empty, nothing
+// is required. docs/reference/targets.md says where rows were confirmed.
+constexpr const char* workplaces =
+#include "measuring/en12464_1.csv"
+    ;
+/// A tenth of what a task with a high risk needs is more than 15 lux where that is above 150.
+constexpr const char* emergencies =
+#include "measuring/en1838.csv"
+    ;
+
+void append_rows(const char* table, std::vector<Requirement>& rows) {
+  std::istringstream lines(table);
+  std::string heading, line;
+  for (std::getline(lines, heading); std::getline(lines, line);) {
+    Requirement& row = rows.emplace_back();
+    std::istringstream words(heading), cells(line);
+    std::string word, cell;
+    while (std::getline(words, word, ';') && std::getline(cells, cell, ';')) {
+      if (word == "name") row.name = cell;
+      if (word == "activity") row.what = cell;
+      if (word == "table" || word == "clause") row.reference = cell;
+      row.is_direct |= word == "clause";
+      if (double* field = field_of(row, word)) *field = parse_number<double>(cell).value_or(0);
+    }
+    row.reference =
+        fmt::format(fmt::runtime(row.is_direct ? "EN 1838:2013, {}, direct light alone"
+                                               : "EN 12464-1:2021, table {}, required values{}"),
+                    row.reference, cell == "confirmed" ? "" : " (not confirmed: check them)");
+  }
+}
+
+/// "office-desk, reception-desk" for "desk": the names that hold a text, or that nearest to it.
+std::string names_near(std::string_view text) {
+  std::vector<std::string_view> all, near;
+  for (const Requirement& row : known_requirements()) {
+    all.push_back(row.name);
+    if (row.name.find(text) != std::string::npos) near.push_back(row.name);
+  }
+  if (near.empty()) near = {text.find('=') < text.size() ? "office-desk" : nearest_word(text, all)};
+  return fmt::format("{}", fmt::join(near, ", "));
 }
 
 void add(std::vector<Judgement>& all, const GridValues& values, const char* figure, double required,
@@ -112,17 +82,26 @@ void add(std::vector<Judgement>& all, const GridValues& values, const char* figu
 
 }  // namespace
 
-std::span<const Requirement> known_requirements() { return all_rows(); }
+std::span<const Requirement> known_requirements() {
+  static const std::vector<Requirement> all = [] {
+    std::vector<Requirement> rows;
+    append_rows(workplaces, rows);
+    append_rows(emergencies, rows);
+    return rows;
+  }();
+  return all;
+}
 
 Requirement parse_requirement(const std::string& text) {
-  for (const Requirement& row : all_rows()) {
+  for (const Requirement& row : known_requirements()) {
     if (row.name == text) return row;
   }
   Requirement own{.name = text, .reference = "", .what = ""};
   const auto refuse = [&] {
     throw UsageError(
-        fmt::format("target '{}': give values such as Em=500,Uo=0.6,UGR=19, or one of {}", text,
-                    known_names()));
+        fmt::format("target '{}': give values such as Em=500,Uo=0.6,UGR=19, or a name of "
+                    "docs/reference/targets.md, such as {}",
+                    text, names_near(text)));
   };
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view part = rest.substr(0, rest.find(','));

@@ -23,7 +23,6 @@ struct Requirement {
   double cylindrical = 0;  ///< E_m,z, lux
   double wall = 0;         ///< E_m,wall, lux
   double ceiling = 0;      ///< E_m,ceiling, lux
-  bool confirmed = true;   ///< by a source that prints the row of the standard
   double least = 0;        ///< E_min, lux: at each point of the task area
   double diversity = 0;    ///< U_d = E_min / E_max there
   /// Whether light that surfaces reflect does not count, as in emergencies.

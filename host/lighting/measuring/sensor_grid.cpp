@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numeric>
+#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -16,12 +19,23 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
+#include "reading/triangles.hpp"
 
 namespace photile::measuring {
 
 namespace {
 
 int whole(double count) { return static_cast<int>(std::clamp(std::round(count), 1.0, 1e6)); }
+
+void count(const std::string& reason, CountedReasons& counted) {
+  if (reason.empty()) return;
+  const auto found = std::ranges::find(counted, reason, &CountedReasons::value_type::first);
+  if (found == counted.end()) {
+    counted.emplace_back(reason, 1);
+  } else {
+    ++found->second;
+  }
+}
 
 }  // namespace
 
@@ -38,21 +52,6 @@ glm::dvec3 PlaneLayout::middle_of(std::uint32_t cell) const {
   const auto in_row = static_cast<std::uint32_t>(columns);
   return at({cell % in_row + 0.5, cell / in_row + 0.5});
 }
-
-namespace {
-
-void count(const std::string& reason, CountedReasons& counted) {
-  if (reason.empty()) return;
-  const auto found = std::find_if(counted.begin(), counted.end(),
-                                  [&](const auto& each) { return each.first == reason; });
-  if (found == counted.end()) {
-    counted.emplace_back(reason, 1);
-  } else {
-    ++found->second;
-  }
-}
-
-}  // namespace
 
 CountedReasons counted_blanks(const SensorGrid& grid) {
   CountedReasons counted;
@@ -115,8 +114,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Cosine between sides that count as at a right angle.
-constexpr double right_angle_slack = 1e-6;
+constexpr double right_angle_slack = 1e-6;  // cosine between sides
 
 PointCounts counts_of(const JsonObject& plane, double u, double v) {
   if (plane.has("columns") || plane.has("rows")) {
@@ -132,7 +130,42 @@ PointCounts counts_of(const JsonObject& plane, double u, double v) {
   return counts;
 }
 
-SensorGrid grid_of(const JsonObject& plane, const std::string& name) {
+/// Corners of what is measured of a plane, metres along its u and v, 0. None = the whole rectangle.
+using Outline = std::vector<glm::dvec3>;
+
+Outline outline_of(const JsonObject& plane, const json& corners) {
+  std::vector<std::array<double, 2>> points;
+  try {
+    points = corners.get<decltype(points)>();
+  } catch (const json::exception&) {  // no points are left, which the comparison finds
+  }
+  if (json(points) != corners || points.size() < 3 || points.size() > limits::max_outline_corners) {
+    plane.refuse(
+        fmt::format("'outline' is not a list of 3 to {} points [x, y], in metres along u and v",
+                    limits::max_outline_corners));
+  }
+  Outline outline;
+  for (const auto& [x, y] : points) outline.emplace_back(x, y, 0.0);
+  if (!reading::triangulate_polygon(outline).simple) plane.refuse("'outline' crosses itself");
+  return outline;
+}
+
+/// Metres from a point of a plane to an outline, negative within it (by the even-odd rule).
+double distance(const Outline& outline, const PlaneLayout& plane, const glm::dvec3& point) {
+  const glm::dvec2 cell(plane.spacing(), glm::length(plane.v) / plane.rows);  // metres
+  const glm::dvec3 at(cell * plane.in_cells(point), 0.0);
+  bool within = false;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::dvec3 to = at - outline[i], side = outline[(i + 1) % outline.size()] - outline[i];
+    if ((to.y < 0) != (to.y < side.y)) within ^= to.x < to.y / side.y * side.x;
+    const double share = glm::dot(to, side) / std::max(glm::dot(side, side), 1e-300);
+    least = std::min(least, glm::length(to - std::clamp(share, 0.0, 1.0) * side));
+  }
+  return within ? -least : least;
+}
+
+SensorGrid grid_of(const JsonObject& plane, const std::string& name, const Outline& outline) {
   const glm::dvec3 along_u = plane.vector("u"), along_v = plane.vector("v");
   const double u = glm::length(along_u), v = glm::length(along_v);
   if (!(u > 0) || !(v > 0)) plane.refuse("'u' or 'v' has length 0");
@@ -143,14 +176,20 @@ SensorGrid grid_of(const JsonObject& plane, const std::string& name) {
   if (counts.total() > limits::max_sensors) {
     plane.refuse(fmt::format("{} points; the limit is {}", counts.total(), limits::max_sensors));
   }
-  return grid_on_plane(plane.text("name", name),
-                       full_plane(plane.vector("origin"), along_u, along_v, counts));
+  PlaneLayout layout = full_plane(plane.vector("origin"), along_u, along_v, counts);
+  std::erase_if(layout.cells, [&](std::uint32_t cell) {
+    return !outline.empty() && distance(outline, layout, layout.middle_of(cell)) > 0;
+  });
+  if (layout.cells.empty())
+    plane.refuse("no point lies in 'outline'; enlarge it or reduce 'spacing'");
+  return grid_on_plane(plane.text("name", name), std::move(layout));
 }
 
 /// The band around an area whose width in metres a key gives. Its cells are as wide as the area's,
-/// those of a background as EN 12464-1 has them for a rectangle of its size.
+/// those of a background as EN 12464-1 has them for a rectangle of its size. Around an outline it
+/// has round corners.
 SensorGrid band_around(const JsonObject& plane, const char* key, const PlaneLayout& inner,
-                       GridRole role) {
+                       GridRole role, const Outline& outline, const PlaneLayout& task) {
   const double band = plane.metres(key);
   const double across = glm::length(inner.u), along = glm::length(inner.v);
   const glm::dvec3 u = inner.u / across, v = inner.v / along;
@@ -166,10 +205,15 @@ SensorGrid band_around(const JsonObject& plane, const char* key, const PlaneLayo
   if (counts.total() > 2 * limits::max_sensors) too_many();  // the area is a part
   PlaneLayout outer =
       full_plane(inner.origin - band * (u + v), outer_across * u, outer_along * v, counts);
+  const double already = 0.5 * (across - glm::length(task.u));
   std::erase_if(outer.cells, [&](std::uint32_t cell) {
-    const glm::dvec3 from = outer.middle_of(cell) - inner.origin;
-    const double x = glm::dot(from, u), y = glm::dot(from, v);
-    return x > 0 && x < across && y > 0 && y < along;
+    const glm::dvec3 middle = outer.middle_of(cell);
+    if (!outline.empty()) {
+      const double gap = distance(outline, task, middle);
+      return gap < already || gap > already + band;
+    }
+    const glm::dvec2 at = inner.in_cells(middle);
+    return at.x > 0 && at.x < inner.columns && at.y > 0 && at.y < inner.rows;
   });
   if (outer.cells.size() > limits::max_sensors) too_many();
   SensorGrid grid = grid_on_plane(key, std::move(outer));
@@ -177,47 +221,13 @@ SensorGrid band_around(const JsonObject& plane, const char* key, const PlaneLayo
   return grid;
 }
 
-}  // namespace
-
-std::vector<SensorGrid> read_planes(const std::filesystem::path& file) {
-  const json content = read_input_json(file);
-  const json list = content.is_array() ? content : json::array({content});
-  if (list.empty()) throw InputError(fmt::format("{}: the file lists no planes", file.string()));
-  std::vector<SensorGrid> grids;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string number = list.size() > 1 ? std::to_string(i + 1) : "";
-    const JsonObject plane(
-        list[i], fmt::format("{}: plane {}", file.string(), i + 1),
-        {"name", "origin", "u", "v", "spacing", "columns", "rows", "surroundings", "background"});
-    grids.push_back(grid_of(plane, file.stem().string() + number));
-    const std::string task = grids.back().name;
-    for (const auto& [key, role] : {std::pair("surroundings", GridRole::surroundings),
-                                    std::pair("background", GridRole::background)}) {
-      if (!plane.has(key)) continue;
-      SensorGrid band = band_around(plane, key, *grids.back().layout, role);
-      band.name = task + " " + key;
-      grids.push_back(std::move(band));
-    }
-  }
-  return grids;
+std::vector<std::string> words_of(std::string line) {
+  std::ranges::replace(line, ',', ' ');
+  std::istringstream words(line);
+  return {std::istream_iterator<std::string>(words), {}};
 }
 
-namespace {
-
-/// The words of a line.
-std::vector<std::string_view> words_of(std::string_view line) {
-  constexpr std::string_view separators = " \t,";
-  std::vector<std::string_view> words;
-  std::size_t first = 0;
-  while ((first = line.find_first_not_of(separators, first)) != std::string_view::npos) {
-    const std::size_t end = std::min(line.find_first_of(separators, first), line.size());
-    words.push_back(line.substr(first, end - first));
-    first = end;
-  }
-  return words;
-}
-
-Sensor sensor_of(const std::vector<std::string_view>& words, const std::string& where) {
+Sensor sensor_of(const std::vector<std::string>& words, const std::string& where) {
   if (words.size() != 6) {
     throw InputError(
         fmt::format("{}: {} numbers; a point has 6: x y z dx dy dz", where, words.size()));
@@ -241,12 +251,37 @@ Sensor sensor_of(const std::vector<std::string_view>& words, const std::string& 
 
 }  // namespace
 
+std::vector<SensorGrid> read_planes(const std::filesystem::path& file) {
+  const json content = read_input_json(file);
+  const json list = content.is_array() ? content : json::array({content});
+  if (list.empty()) throw InputError(fmt::format("{}: the file lists no planes", file.string()));
+  std::vector<SensorGrid> grids;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string number = list.size() > 1 ? std::to_string(i + 1) : "";
+    const JsonObject plane(list[i], fmt::format("{}: plane {}", file.string(), i + 1),
+                           {"name", "origin", "u", "v", "outline", "spacing", "columns", "rows",
+                            "surroundings", "background"});
+    const Outline outline =
+        plane.has("outline") ? outline_of(plane, list[i]["outline"]) : Outline();
+    grids.push_back(grid_of(plane, file.stem().string() + number, outline));
+    const SensorGrid task = grids.back();
+    for (const auto& [key, role] : {std::pair("surroundings", GridRole::surroundings),
+                                    std::pair("background", GridRole::background)}) {
+      if (!plane.has(key)) continue;
+      SensorGrid band = band_around(plane, key, *grids.back().layout, role, outline, *task.layout);
+      band.name = task.name + " " + key;
+      grids.push_back(std::move(band));
+    }
+  }
+  return grids;
+}
+
 SensorGrid read_points(const std::filesystem::path& file) {
   const std::string text = read_input_text(file);
   SensorGrid grid{file.stem().string(), {}, {}};
   std::size_t number = 0;
   for (const std::string_view line : lines_of(text)) {
-    const auto words = words_of(line);
+    const auto words = words_of(std::string(line));
     ++number;
     if (words.empty() || words.front().starts_with('#')) continue;
     grid.sensors.push_back(sensor_of(words, fmt::format("{}: line {}", file.string(), number)));

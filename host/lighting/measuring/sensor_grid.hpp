@@ -88,10 +88,10 @@ PlaneLayout full_plane(const glm::dvec3& origin, const glm::dvec3& u, const glm:
 
 /// Reads a JSON object {"name", "origin", "u", "v"} with either "spacing" or "columns" and "rows",
 /// or a list of such: a rectangle from a corner along two sides at a right angle, metres in the
-/// scene file's world, which faces u x v. Without a spacing it is that of EN 12464-1. With
+/// scene file's world, which faces u x v. Without a spacing it is that of EN 12464-1. Of a plane
+/// with an "outline" [[x, y], ...], metres along u and v, only points within it are kept. With
 /// "surroundings" the band of this many metres around it is a separate grid, and with "background"
-/// the band around that; a task comes before its bands. Errors: InputError naming the file, the
-/// plane and the key.
+/// the band around that; a task comes first. Errors: InputError naming file, plane and key.
 std::vector<SensorGrid> read_planes(const std::filesystem::path& file);
 
 /// Reads lines of six numbers: x y z of a point in metres and the direction that it faces, of any

@@ -186,8 +186,8 @@ std::vector<Segment> furniture_of(const RayScene& rays, const measuring::PlaneLa
   const int rows = std::max(2, static_cast<int>(std::lround(metres.y / step)));
   const std::vector<double> depths = depths_below(rays, frame, columns, rows);
   std::vector<double> known;
-  std::copy_if(depths.begin(), depths.end(), std::back_inserter(known),
-               [](double depth) { return !std::isnan(depth); });
+  std::ranges::copy_if(depths, std::back_inserter(known),
+                       [](double depth) { return !std::isnan(depth); });
   if (known.empty()) return {};
   const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
   std::nth_element(known.begin(), middle, known.end());
@@ -227,9 +227,9 @@ std::vector<glm::dvec2> outline_of(const Scene& scene, const Light& light, const
   for (int i = 0; i < directions && !corners.empty(); ++i) {
     const double angle = glm::two_pi<double>() * (i + 0.5) / directions;
     const glm::dvec2 there(std::cos(angle), std::sin(angle));
-    const auto farthest = std::max_element(
-        corners.begin(), corners.end(),
-        [&](const auto& a, const auto& b) { return glm::dot(a, there) < glm::dot(b, there); });
+    const auto farthest = std::ranges::max_element(corners, [&](const auto& a, const auto& b) {
+      return glm::dot(a, there) < glm::dot(b, there);
+    });
     if (hull.empty() || hull.back() != *farthest) hull.push_back(*farthest);
   }
   if (hull.size() > 1 && hull.front() == hull.back()) hull.pop_back();
@@ -275,9 +275,8 @@ PlanSurroundings surroundings_of(const RayScene& rays, const measuring::PlaneLay
     const auto away = [&](std::uint32_t cell) {
       return glm::distance(layout.middle_of(cell), middle);
     };
-    middle = layout.middle_of(
-        *std::min_element(layout.cells.begin(), layout.cells.end(),
-                          [&](std::uint32_t a, std::uint32_t b) { return away(a) < away(b); }));
+    middle = layout.middle_of(*std::ranges::min_element(
+        layout.cells, [&](std::uint32_t a, std::uint32_t b) { return away(a) < away(b); }));
   }
   if (const auto room = trace::Room::around(rays, axes, middle)) {
     const auto cells = [&](const glm::dvec2& plan) {

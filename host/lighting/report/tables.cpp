@@ -60,9 +60,8 @@ Json sensor_json(const measuring::GridValues& values, std::size_t sensor) {
 
 /// Of UTF-8.
 std::size_t letters_in(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
-  }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
 }
 
 std::string lux_with_error(const Measured& measured) {
@@ -118,13 +117,11 @@ std::string measurement_csv(const measuring::Measurement& measurement, const std
                             std::optional<double> ground) {
   std::string text = fmt::format("grid,point,x,y,z,dx,dy,dz,{},standard_error", csv_field(unit));
   const auto& lights = measurement.front().lights;
-  const bool any_mark =
-      std::any_of(measurement.begin(), measurement.end(), [](const measuring::GridValues& values) {
-        return !measuring::counted_marks(values.grid).empty();
-      });
-  const bool any_blank =
-      std::any_of(measurement.begin(), measurement.end(),
-                  [](const measuring::GridValues& values) { return !values.grid.blanks.empty(); });
+  const bool any_mark = std::ranges::any_of(measurement, [](const measuring::GridValues& values) {
+    return !measuring::counted_marks(values.grid).empty();
+  });
+  const bool any_blank = std::ranges::any_of(
+      measurement, [](const measuring::GridValues& values) { return !values.grid.blanks.empty(); });
   for (std::size_t i = 1; i < lights.size(); ++i) {
     text += fmt::format(",{},{}", csv_field("lux " + lights[i].light),
                         csv_field("standard_error " + lights[i].light));
