@@ -257,8 +257,9 @@ def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[st
         return str(path)
 
     command = ["photile", "measure", str(scene)]
+    report = ["-o", str(scene.with_suffix(".html"))]
     if chosen:
-        beside(".rooms.json", _json_lines([room.record() for room in chosen]))
+        report = ["--include", beside(".rooms.json", _json_lines([room.record() for room in chosen])), *report]
         command += ["--grid", beside(".grids.json", _json_lines([room.grid() for room in chosen]))]
     else:
         command += ["--plane", f"floor+{working_plane}"]
@@ -273,8 +274,7 @@ def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[st
         if path.resolve() in inputs:
             raise UsageError(f"{path}: this file is read; name another one to write")
     write_files(outputs)
-    return Conversion([*command, "-o", str(scene.with_suffix(".html"))],
-                      _summary(building, chosen, len(luminaires)), building.warnings)
+    return Conversion([*command, *report], _summary(building, chosen, len(luminaires)), building.warnings)
 
 
 def _profile(text: str) -> tuple[str, Path]:

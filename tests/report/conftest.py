@@ -21,19 +21,19 @@ def measured(value, error=0.1):
     return {"value": value, "standard_error": error}
 
 
-def grid_of(name, lux, columns=3, rows=2, **more):
+def grid_of(name, lux, columns=3, rows=2, level=0.75, **more):
     """A plane of cells of a metre. None = a cell without a sensor."""
     cells = [cell for cell, value in enumerate(lux) if value is not None]
     known = [lux[cell] for cell in cells]
     mean, least, most = sum(known) / len(known), min(known), max(known)
     return {
         "name": name, "points": len(known),
-        "plane": {"origin": [0, 0.75, 0], "u": [columns, 0, 0], "v": [0, 0, -rows],
+        "plane": {"origin": [0, level, 0], "u": [columns, 0, 0], "v": [0, 0, -rows],
                   "columns": columns, "rows": rows, "cells": cells},
         "statistics": {"Em": measured(mean), "Emin": {**measured(least), "at_most": least},
                        "Emax": {**measured(most), "at_least": most},
                        "Uo": measured(least / mean, 0.01), "Ud": measured(least / most, 0.01)},
-        "sensors": [{"position": [cell % columns + 0.5, 0.75, -(cell // columns) - 0.5],
+        "sensors": [{"position": [cell % columns + 0.5, level, -(cell // columns) - 0.5], "direction": [0, 1, 0],
                      "lux": lux[cell], "standard_error": 0.1} for cell in cells], **more}
 
 

@@ -14,14 +14,21 @@ from conftest import FOLDER, grid_of, measured
 
 pytest.importorskip("jinja2")
 pytest.importorskip("contourpy")
-from photile_report import pages, texts
+from photile_report import melanopic, pages, texts
 from photile_report.included import Included
 from photile_report.pages import Report
 
 HOSTILE = "</style><script>alert(1)</script> {{ 7 * 7 }} \" ' \\ &amp;"
 OBSERVER = {"name": "desk", "position": [0.5, 1.2, -0.5], "ugr": measured(17.2),
             "illuminance": measured(300, 2)}
+JUDGED = {"grid": "working plane", "figure": "Em", "required": 150, "at_most": False, "value": 200.0,
+          "standard_error": 1, "met": True, "doubtful": False}
 PLANE = {"origin": [0, 1.2, 0], "u": [3, 0, 0], "v": [0, 0, -2], "columns": 3, "rows": 2}
+# An L of 12 m2 around the grid of the record, with a foot beyond it.
+L_ROOM = {"name": "101", "storey": "Level <1>", "area": 12, "height": 2.5, "floor": 0, "holes": [],
+          "outline": [[x, 0, z] for x, z in ((0, 0), (3, 0), (3, -2), (9, -2), (9, -3), (0, -3))]}
+FACTORS = {"unit": "DF %", "grids": [grid_of("desks", [1, 3, 3, 5], 2, 2)]}
+FAR_ROOM = {**L_ROOM, "name": "102", "floor": 10}
 
 
 def run(*arguments):
@@ -61,16 +68,13 @@ def test_grids_of_several_rooms_have_no_room_of_their_own(record):
 
 def test_what_is_required_is_judged(record):
     record["target"] = {"name": "Em=150", "reference": "", "what": "", "ugr_limit": 19, "ra": 80,
-                        "judgements": [{"grid": "working plane", "figure": "Em", "required": 150,
-                                        "at_most": False, "value": 200.0, "standard_error": 1,
-                                        "met": True, "doubtful": False}]}
+                        "judgements": [JUDGED]}
     page = page_of(record)
     assert "at least 150" in page and ">met<" in page and "see photile glare" in page
     assert "90, by the luminaires&#39; data sheets" in page and "<b>" not in page
     record["photometry"][0]["ra"] = 0
     record["target"]["judgements"].append({
-        "grid": "desk", "figure": "UGR", "required": 19, "at_most": True, "value": 21.44,
-        "standard_error": 0.1, "met": False, "doubtful": False})
+        **JUDGED, "grid": "desk", "figure": "UGR", "required": 19, "at_most": True, "value": 21.44, "met": False})
     page = page_of(record)
     assert "see the luminaires&#39; data sheets" in page and "<td>21.4</td>" in page
     assert "<b>not met</b>" in page and "see photile glare" not in page
@@ -102,15 +106,15 @@ def full(record):
     for sensor in grid["sensors"]:
         sensor["lights"] = {"lamp": {"lux": sensor["lux"]}}
     record["grids"] += [grid_of("desk surroundings", [1, 2, 3, 4, 5, 6])]
-    record["photometry"][0]["data"] += [["power", "50 W, 120 lm/W"], ["colour temperature", "2700 to 6500 K"]]
+    record["grids"] += [grid_of("cylindrical", [100] * 6), grid_of("102", [200] * 6, level=10.75)]
+    record["photometry"][0]["data"] += [["power", "50 W, 120 lm/W"], ["colour temperature", "4000 K"]]
     record["target"] = {"name": "office-desk", "reference": "EN 12464-1:2021, table 34, required values",
                         "what": "writing, typing, reading and data processing", "ugr_limit": 19, "ra": 80,
-                        "judgements": [{"grid": "north wall", "figure": "Em", "required": 150, "at_most": False,
-                                        "value": 12500.5, "standard_error": 1, "met": True, "doubtful": False}]}
+                        "judgements": [{**JUDGED, "grid": "north wall", "value": 12500.5}]}
     results = pathlib.Path(__file__).parent / "results"
+    contents = [json.loads((results / name).read_text()) for name in ("observers.json", "planes.json")]
     record["report"] |= {"project": "P", "client": "C", "designer": "D", "included": [
-        {"file": name, "content": json.loads((results / name).read_text())}
-        for name in ("observers.json", "daylight.json")]}
+        {"file": "", "content": content} for content in (*contents, [L_ROOM, FAR_ROOM], FACTORS)]}
     return record
 
 
@@ -125,14 +129,12 @@ def test_a_page_in_german_has_no_english_words(full):
     german = page_of(full)
     same = {text for text in texts_of(english) & texts_of(german) if re.search("[A-Za-z]{2}", text)}
     names = {full["scene"], "lamp", "wall", "Good & Ltd", "A: a.ies", "Good & Ltd\na.ies", "photile 0.1",
-             "LENI (EN 15193)", "Name", "Material", "UGR", "DGP", "sDA", "ASE", "DA", "cd/klm", "max", "min"}
-    others = {each["name"] for include in full["report"]["included"]
-              for each in (include["content"] if isinstance(include["content"], list)
-                           else include["content"]["observers"])}
+             "LENI (EN 15193)", "Name", "Material", "UGR", "DGP", "sDA", "ASE", "DA", "cd/klm", "max", "min",
+            "UDI", "IES LM-83", "101", "102", "Level <1>", "desks", "Uo", "Good & Ltd \u00b7 a.ies"}
     units = re.compile(r"[-<\d.,;:\u00b1\u00d7\u00b2/() m]*(lm|lm/W|W|kWh|lx|m)?")
-    assert {text for text in same - names - others if not units.fullmatch(text)} == set()
-    for text in ("Nutzebene, 1:20", "12.000 lm", "0,500", "16,67 W/m\u00b2; 8,33 W/m\u00b2 / 100 lx",
-                 "2700 bis 6500 K", "desk: unmittelbarer Umgebungsbereich, 1:20", "1,50; 2,20; -1,00",
+    assert {text for text in same - names if not units.fullmatch(text)} == set()
+    for text in ("Nutzebene, 1:50", "12.000 lm", "0,500", "8,33 W/m\u00b2; 4,17 W/m\u00b2 / 100 lx",
+                 "4000 K", "desk: unmittelbarer Umgebungsbereich, 1:50", "1,50; 2,20; -1,00",
                  "\u00d7 1 Punkte sind ausgelassen: weniger als 0,25 m von einer Fläche."):
         assert text in texts_of(german), text
 
@@ -142,10 +144,10 @@ def test_every_word_of_templates_and_tables_is_translated_and_every_translated_o
     said = re.findall(r'_\("((?:[^"\\]|\\.)*)"', (FOLDER / "templates/report.html").read_text())
     assert len(said) > 20
     report = Report(full)
-    for table in (*report._included.tables, *report._tables()):
-        said += [table["heading"], *table["columns"]]
-    symbols = {"lux", "UGR", "DGP", "DA", "sDA", "ASE"}
-    assert [one for one in said if one not in words and one not in symbols] == []
+    for table in (*report._results(), *report._lists(), report._building.table()):
+        said += [table["heading"], *table["columns"], table.get("remark", "lux")]
+    symbols, german_words = {"lux", "UGR", "DGP", "DA", "sDA", "ASE", "IES LM-83", "Uo"}, texts.Words("de")
+    assert [one for one in said if german_words(one) == one and one not in symbols] == []
     assert {english for english, german in words.items() if english == german} == {"LENI (EN 15193)"}
     for english, german in words.items():
         assert sorted(re.findall("{.*?}", english)) == sorted(re.findall("{.*?}", german)), english
@@ -184,14 +186,18 @@ def test_results_of_other_commands_are_included(record):
     observers.append({**OBSERVER, "ugr": None, "position": [1.5, 1.2, -0.5]})
     year = [{"name": "desks", "mean_lux": 812.3, "DA": 0.61, "sDA": 0.8, "target_lux": 300,
              "standard_errors": {"DA": 0.004}, "EN 17037": {"target_lux": 310, "minimum_target_lux": 120},
-             "lamps": [{"kilowatt_hours": 44}], "plane": PLANE, "sensors": [
-                 {"position": [0.5, 1.2, -0.5], "DA": 0.2, "UDI": {"100 to 300": 0.1, "300 to 3000": 0.5}}]}]
+             "ASE": 0.1, "lamps": [{"kilowatt_hours": 44}], "plane": PLANE, "sensors": [
+                 {"position": [0.5 + i, 1.2, -0.5], "DA": 0.2, "UDI": {"100 to 300": 0.1, "300 to 3000": 0.5},
+                  "sun_hours": 20, "median_lux": lux} for i, lux in enumerate((299, 310, 500))]}]
+    year[0]["EN 17037"]["level"] = "minimum"
     record["report"]["included"] = [
         {"file": "glare.json", "content": {"observers": observers, "plane": PLANE}},
         {"file": "year.json", "content": year}]
     page = page_of(record)
     for part in ("Glare (the worst 12 of 21 observers)", "16.9 \u00b1 0.1", "the highest UGR",
-                 "DA 300 lux", "UDI 100 to 3000 lux", "61.0 \u00b1 0.4%", "7.3 kWh/(m\u00b2 a), 44 kWh / a"):
+                 "DA 300 lux", "UDI 100 to 3000 lux", "61.0 \u00b1 0.4%", "7.3 kWh/(m\u00b2 a), 44 kWh / a",
+                 "<td>preferred</td><td>10.0%</td><td>met</td>", "sun, line at 250 h", "median lux (EN 17037)",
+                 "<td>67% / 100%</td><td>33% / 67%</td><td>0% / 33%</td><td>minimum</td>"):
         assert part in page, part
     assert "desk 7<" not in page
     record["grids"] = []
@@ -205,7 +211,7 @@ def test_results_of_other_commands_are_included(record):
     {"observers": [], "plane": {**PLANE, "columns": 99999, "rows": 99999}}])
 def test_what_is_no_result_is_refused_by_name(record, content):
     record["report"]["included"] = [{"file": "b.json", "content": content}]
-    with pytest.raises(pages.BadInput, match="b.json: this is not a result.*photile glare"):
+    with pytest.raises(pages.BadInput, match="b.json: this is neither a result.*photile glare"):
         Report(record)
 
 
@@ -223,12 +229,63 @@ def test_results_that_fuzzing_gathered_are_read_or_refused(record):
             continue
         record["report"]["included"] = [{"file": "fuzzed.json", "content": content}]
         try:
-            table, = Report(record)._included.tables
+            tables = Report(record)._included.tables
         except pages.BadInput:
             continue
-        assert all(len(row) == len(table["columns"]) for row in table["rows"])
+        assert all(len(row) == len(table["columns"]) for table in tables for row in table["rows"])
         read += 1
     assert read > 0
+
+
+def test_contents_name_each_part_of_a_long_report(record):
+    assert 'class="page contents"' not in page_of(record)
+    record["grids"] *= 3
+    root = ElementTree.fromstring(page_of(record).split("\n", 1)[1])
+    entries = {link.get("href"): link.text for link in root.iter("a")}
+    assert entries == {"#" + part.get("id"): part.text for part in root.iter("h2") if part.get("id")}
+    assert "Glossary" in entries.values()
+
+
+def test_each_room_of_a_building_has_a_row_and_a_page(record):
+    record["target"] = {"name": "Em=150", "reference": "", "what": "", "ugr_limit": 0, "ra": 0,
+                        "judgements": [JUDGED, {**JUDGED, "grid": "102", "met": False}]}
+    record["grids"].append(grid_of("102", [100] * 6, level=10.75))
+    record["report"]["included"] = [{"file": "", "content": [L_ROOM, FAR_ROOM]}]
+    page = re.sub(r"\n\s*", "", page_of(record))
+    for part in ("<td>101</td><td>Level &lt;1&gt;</td><td>12.0</td><td>200</td><td>0.50</td><td>met</td>",
+                 "<td>102</td><td>Level &lt;1&gt;</td><td>12.0</td><td>100</td><td>1.00</td><td><b>not met</b></td>",
+                 "<th>Em, lux, at least 150</th>", "<dt>target met</dt><dd>1 / 2</dd>", "<dd>24.0 m\u00b2</dd>",
+                 "<dd>8.33 W/m\u00b2, 4.17 W/m\u00b2 / 100 lx</dd>", "<td>A1</td><td>lamp</td><td>point</td><td>101"):
+        assert part in page, part
+    assert page.count('class="room"') == 2 and ">9.00</text>" in page and page.count("<dd>100 W</dd>") == 2
+    places = pages.np.array([[1, 0.7, -1], [8, 0.7, -2.5], [8, 0.7, -1], [1, 3.2, -1], [1, -0.2, -1]])
+    assert Report(record)._building.rooms[0].room.holds(places).tolist() == [True, True, False, False, False]
+
+
+def test_daylight_factors_have_levels_by_the_light_outdoors(record):
+    record["report"]["included"] = [{"file": "", "content": FACTORS}]
+    row, = Report(record)._results()[0]["rows"]
+    assert row == ["desks", "3.00%", "3.00%", "1.00%", "10,000", "30,000", "50,000"]
+    record["report"]["outdoor_lux"] = 10000  # targets of 3% and 1%, 5% and 3%, 7.5% and 5%
+    assert Report(record)._results()[0]["rows"][0][4:] == ["75% / 100%", "25% / 75%", "0% / 25%", "minimum"]
+    assert "<h1>Daylight factors: room" in page_of({**record, **FACTORS})
+
+
+def test_melanopic_light_is_that_of_the_luminaires_colours(record):
+    eyes = grid_of("cylindrical", [100, 200, 600, 100, 200, 600])
+    record["grids"].append(eyes)
+    assert melanopic.melanopic_table(record) is None  # the file states no colour
+    record["photometry"][0]["data"].append(["colour temperature", "4103 K"])
+    row, = melanopic.melanopic_table(record)["rows"]
+    assert row[1:] == ["300", "0.63", "190", "63", "33%", "33%"]
+    record["luminaires"].append({"name": "sky", "position": None, "file": "", "lumens": 1})
+    assert melanopic.melanopic_table(record) is None
+    record["lights"] = [{"name": "sky"}, {"name": "all lamps"}]
+    for sensor in eyes["sensors"]:
+        sensor["lights"] = {name: {"lux": sensor["lux"] / 2} for name in ("sky", "all lamps")}
+    assert melanopic.melanopic_table(record)["rows"][0][2:4] == ["0.82", "245"]
+    record["photometry"][0]["data"][-1][1] = "2700 to 6500 K"
+    assert melanopic.melanopic_table(record) is None and melanopic.ratio_of(1800) is None
 
 
 def test_numbers_are_those_that_people_read():
@@ -244,7 +301,7 @@ def test_the_program_writes_whole_files_and_says_what_is_wrong_in_a_line(record,
     record["grids"].append(grid_of("second", [1, 2, 3, 4, 5, 6]))
     record["scene"] = "\ud800 \x01"
     results.write_text(json.dumps(record))
-    done = run(results, "-o", page, "-o", plan)
+    done = run(results, "--outdoor-lux", 9000, "-o", page, "-o", plan)
     assert (done.returncode, done.stderr) == (0, "")
     assert "<title>? ?</title>" in page.read_text(encoding="utf-8")
     assert sorted(file.name for file in tmp_path.iterdir()) == ["a.html", "p-1.svg", "p-2.svg", "r.json"]
@@ -253,7 +310,9 @@ def test_the_program_writes_whole_files_and_says_what_is_wrong_in_a_line(record,
     page.write_text("before")
     for arguments, code, said in (((results, "-o", page), 3, "r.json"), ((page, "-o", plan), 3, "a.html"),
                                   ((results, "-o", tmp_path / "no/a.svg"), 1, "a-1.svg"),
-                                  ((results, "-o", tmp_path / "a.txt"), 2, ".html")):
+                                  ((results, "-o", tmp_path / "a.txt"), 2, ".html"),
+                                  ((results, "--include", page, "-o", plan), 3, "a.html"),
+                                  ((results, "--outdoor-lux", "none", "-o", plan), 2, "--outdoor-lux none")):
         done = run(*arguments)
         assert (done.returncode, done.stderr.count("\n")) == (code, 1), done.stderr
         assert done.stderr.startswith("photile.report: error: ") and said in done.stderr

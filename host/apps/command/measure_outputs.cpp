@@ -116,7 +116,7 @@ void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options
              "EXR of the scene; the report shows its moods as pictures and in lux",
              file_ending_in({".exr"}));
   output.repeat("--include", options.report.results, "FILE.json",
-                "JSON of photile glare or daylight to show in the report; repeatable",
+                "JSON to show in the report: glare, daylight, daylight factors, rooms; repeatable",
                 file_ending_in({".json"}));
   output.add("--logo", options.logo, "FILE", "logo at the head of the report, PNG or JPEG");
   output.add("--project", options.project, "TEXT",

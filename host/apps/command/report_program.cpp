@@ -204,7 +204,7 @@ std::optional<measuring::Judgement> highest_glare(const nlohmann::ordered_json& 
   std::optional<measuring::Judgement> highest;
   for (const auto& result : included) {
     const auto& content = result.at("content");
-    if (!(requirement.glare > 0) || !content.is_object()) continue;
+    if (!(requirement.glare > 0) || !content.contains("observers")) continue;
     for (const auto& observer : content.at("observers")) {
       const auto& rating = observer.at("ugr");
       if (rating.is_null()) continue;

@@ -60,6 +60,16 @@ def _read(file: str) -> Any:
         raise Failure(INPUT, f"{file}: {getattr(error, 'strerror', None) or error}") from None
 
 
+def _lux(option: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0 < value < 1e6:
+        raise Failure(USAGE, f"{option} {text}: give lux above 0, such as 13900")
+    return value
+
+
 def permissions(file: pathlib.Path) -> int:
     """Of what takes a file's place: those of the file, or those of a new one."""
     try:
@@ -135,6 +145,12 @@ def _run(arguments: Sequence[str] | None) -> None:
                         help="report (.html, .pdf) or plan (.svg, .dxf) to write; repeatable")
     parser.add_argument("--template", metavar="FOLDER", help="folder of templates that replace photile's")
     parser.add_argument("--language", help="language of the report: en, de, or NAME of FOLDER/words/NAME.json")
+    parser.add_argument("--include", action="append", default=[], metavar="FILE.json",
+                        help="other results to show: of photile glare, daylight, measure --daylight-factor, or "
+                             "rooms.json of photile.from_ifc; repeatable")
+    parser.add_argument("--outdoor-lux", metavar="LUX",
+                        help="median diffuse illuminance outdoors (EN 17037, table A.3), which gives daylight factors "
+                             "their levels")
     parser.add_argument("--check", action="store_true",
                         help="check that all that the outputs need is installed; write nothing")
     parser.add_argument("--ugr-table", action="store_true",
@@ -154,8 +170,14 @@ def _run(arguments: Sequence[str] | None) -> None:
     record = _read(options.record)
     if not isinstance(record, dict):
         record = {"report": {"included": [{"file": options.record, "content": record}]}}
+    about = record.setdefault("report", {})
     if options.language:
-        record.setdefault("report", {})["language"] = options.language
+        about["language"] = options.language
+    if options.outdoor_lux:
+        about["outdoor_lux"] = _lux("--outdoor-lux", options.outdoor_lux)
+    if options.include:
+        included = [{"file": file, "content": _read(file)} for file in options.include]
+        about["included"] = [*about.get("included", []), *included]
     try:
         if options.check:
             pages.Report(record, options.template).check()

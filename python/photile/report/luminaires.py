@@ -92,6 +92,11 @@ class Luminaires:
         self.types.append(added)
         return added
 
+    def watts(self, lamp: dict[str, Any]) -> float:
+        """The power of a luminaire, in proportion where it is dimmed; 0 = not known."""
+        kind = self.of_number[int(lamp["number"])]
+        return float(kind.watts * lamp["lumens"] / kind.lumens) if kind.lumens > 0 else 0.0
+
     def tag(self, number: int) -> str:
         """The type's letter and the luminaire's number: "B7"."""
         return (self.of_number[number].tag if number in self.of_number else "") + str(number)

@@ -6,6 +6,7 @@ import base64
 import importlib
 import os
 import pathlib
+import re
 from typing import Any
 
 import jinja2
@@ -13,14 +14,20 @@ import jinja2.sandbox
 import markupsafe
 import numpy as np
 
-from . import texts
-from .included import Included, Map
+from . import glossary, texts
+from .included import Included, Map, factor_table
 from .luminaires import Luminaires
-from .plans import Curve, Plan
+from .melanopic import melanopic_table
+from .plans import Curve, Plan, sheets
+from .rooms import Building, Room, RoomResults
 from .scale import fitted
+from .tables import Table, table
 
 most_light_plans = 6  # more do not fit on a page
+most_without_contents = 3  # parts of a report that begin a page, after the first page
+row_height = 4.5  # millimetres of a row of texts above a plan
 Pairs = list[tuple[str, str]]
+_heading = re.compile('<h2 id="([^"]*)">(.*?)</h2>', re.DOTALL)
 _own = pathlib.Path(__file__).resolve().parent / "templates"
 
 
@@ -87,13 +94,19 @@ class Report:
             "number": lambda value, digits: self._words.figure(texts.number(value, digits))}
         self._environment.globals |= {"_": self._words, "embedded": self._embedded}
         self._luminaires = Luminaires(record)
-        self._included = Included()
+        outdoors = self._about.get("outdoor_lux")
+        self._included = Included(outdoors)
         for each in self._about["included"]:
             try:
                 self._included.add(each["content"])
             except (KeyError, IndexError, TypeError, ValueError, AttributeError):
-                raise BadInput(f"{each['file']}: this is not a result of a year or of observers; give what "
-                               "photile glare or daylight has written by -o FILE.json") from None
+                raise BadInput(f"{each['file']}: this is neither a result nor rooms of a building; give what "
+                               "photile glare, daylight or measure --daylight-factor has written by -o FILE.json, or "
+                               "NAME.rooms.json of photile.from_ifc") from None
+        self._factors = factor_table(record["grids"], outdoors) if record.get("unit") == "DF %" else None
+        if self._factors:
+            self._about["subject"] = "Daylight factors"
+        self._building = Building(self._included.rooms, record, self._luminaires)
 
     def check(self) -> None:
         """Reads the templates; raises BadInput where that fails."""
@@ -125,9 +138,15 @@ class Report:
     def _drawn(self, plan: Plan) -> Any:
         return markupsafe.Markup(self._rendered("plan.svg", plan=plan))
 
-    def _plan_of_grid(self, grid: dict[str, Any], light: str = "") -> Plan:
+    def _plan_of_grid(self, grid: dict[str, Any], light: str = "", room: Room | None = None,
+                      rows_above: int = 0, page: str = "") -> Plan:
         """A plan of all lights on the scale that all grids share, or of one light on its own: a weak lamp
-        would show nothing on the scale of all."""
+        would show nothing on the scale of all.
+
+        room         to show as a whole
+        rows_above   of texts on the page, above the figures of the grid
+        page         upright or lying; "" = as it suits
+        """
         colours = self._about["colours"]
         if light:
             values = [sensor["lights"][light]["lux"] for sensor in grid["sensors"]]
@@ -135,7 +154,8 @@ class Report:
         shared = fitted(colours, [np.array([sensor["lux"] for sensor in each["sensors"]], float)
                                   for each in self._record["grids"] if "plane" in each])
         return Plan(grid, [sensor["lux"] for sensor in grid["sensors"]], self._words(grid["name"]), shared,
-                    self._words, self._luminaires)
+                    self._words, self._luminaires, outline=room.on(grid["plane"]) if room else (),
+                    taken=row_height * rows_above, pages=(page,) if page else tuple(sheets))
 
     def _plan_of_luminaires(self) -> Any:
         """The plan that shows most of them, without values; "" where none does."""
@@ -161,7 +181,7 @@ class Report:
         grids = self._record.get("grids", [])
         if grids:
             return [self._plan_of_grid(grid) for grid in grids if "plane" in grid]
-        return [self._plan_of_map(one, False) for one in self._included.maps]
+        return [self._plan_of_map(one, False) for one in self._included.maps if one.alone]
 
     def plans(self) -> list[str]:
         """SVG of each plane, or for a year of each figure on it."""
@@ -175,20 +195,51 @@ class Report:
                 for grid in self._record.get("grids", []) if "plane" in grid]
 
     def page(self) -> str:
-        """An HTML page that needs no other file and prints on numbered pages of A4. Well-formed XML."""
-        record, about = self._record, self._about
-        return self._rendered(
-            "report.html", record=record, about=about, language=about["language"],
-            judgements=self._judgements(), energy=self._energy(), facts=self._facts(),
-            grids=[self._grid(grid) for grid in record.get("grids", [])], maps=self._maps(),
-            tables=[*self._included.tables, *self._tables()], sheets=self._sheets())
+        """An HTML page that needs no other file and prints on numbered pages of A4. Well-formed XML.
 
-    def _grid(self, grid: dict[str, Any]) -> dict[str, Any]:
+        A long one has contents and a glossary, of what it contains without them.
+        """
+        record, about = self._record, self._about
+        values = {
+            "record": record, "about": about, "language": about["language"], "unit": "%" if self._factors else "lux",
+            "symbol": "D" if self._factors else "E", "factors": self._factors,
+            "energy": self._energy(), "facts": self._facts(), "judgements": self._judgements(),
+            "building": self._building.facts(),
+            "table_of_rooms": self._building.table() if self._building.rooms else None,
+            "rooms": [self._room(one) for one in self._building.rooms if one.grids],
+            "grids": [self._grid(grid) for grid in self._building.others], "maps": self._maps(),
+            "results": self._results(), "lists": self._lists(), "sheets": self._sheets()}
+        page = self._rendered("report.html", contents=[], terms=[], **values)
+        if page.count('<section class="page') <= most_without_contents:
+            return page
+        terms = glossary.used(page, self._words)
+        page = self._rendered("report.html", contents=[], terms=terms, **values)
+        contents = [(anchor, markupsafe.Markup(heading)) for anchor, heading in _heading.findall(page)]
+        return self._rendered("report.html", contents=contents, terms=terms, **values)
+
+    def _room(self, one: RoomResults) -> dict[str, Any]:
+        """A room's own page."""
+        facts = [(name, self._words.figure(value)) for name, value in one.facts() if value]
+        judgements = self._shown(one.judgements)
+        named = any(each["grid"] != one.room.name for each in judgements)
+        parts = one.parts(self._luminaires)
+        above = 2 + max(len(facts), len(judgements) + len(parts["rows"]) + 4)
+        grids: list[dict[str, Any]] = []
+        page = ""
+        for grid in one.grids:  # all on pages that lie as the first plan needs
+            grids.append(self._grid(grid, one.room, 0 if grids else above, page))
+            page = grids[-1]["page"]
+        return {"name": one.room.name, "facts": facts, "judgements": judgements, "named": named, "parts": parts,
+                "grids": grids, "page": page}
+
+    def _grid(self, grid: dict[str, Any], room: Room | None = None, rows_above: int = 0,
+              page: str = "") -> dict[str, Any]:
         minimum, lights = grid["statistics"]["Emin"], grid.get("lights", {})
         plane = grid.get("plane")
         drawn = list(lights) if plane and 0 < len(lights) <= most_light_plans else []
-        plan = self._plan_of_grid(grid) if plane else None
-        heading = self._words("{}: {} points", self._words(grid["name"]), grid["points"])
+        plan = self._plan_of_grid(grid, room=room, rows_above=rows_above, page=page) if plane else None
+        heading = (self._words("{} points", grid["points"]) if room and grid["name"] == room.name
+                   else self._words("{}: {} points", self._words(grid["name"]), grid["points"]))
         if plane:
             wide, high = (float(np.linalg.norm(plane[side])) for side in ("u", "v"))
             heading += self._words(", {:.2f} x {:.2f} m, {:.2f} m apart", wide, high,
@@ -202,11 +253,14 @@ class Report:
             remarks += [self._words(text, reasons.count(reason), self._words(reason))
                         for reason in dict.fromkeys(reasons)]
         least = minimum["value"], minimum["at_most"]
-        noisy = None not in least and least[1] - least[0] > (minimum["standard_error"] or 0)
+        noisy = (None not in least and least[1] - least[0] > (minimum["standard_error"] or 0)
+                 and not self._factors)
+        if room:  # of all lights of a building, those that reach it
+            lights = {name: one for name, one in lights.items() if one["Em"]["value"]}
         return {"heading": heading, "remarks": remarks, "noisy": noisy,
                 "rows": [("", grid["statistics"]), *lights.items()],
                 "statistics": grid["statistics"], "name": grid["name"],
-                "plan": self._drawn(plan) if plan else "", "page": plan.page if plan else "",
+                "plan": self._drawn(plan) if plan else "", "page": plan.page if plan else page,
                 "plans": [self._drawn(self._plan_of_grid(grid, light)) for light in drawn]}
 
     def _maps(self) -> list[tuple[str, list[Any]]]:
@@ -216,12 +270,18 @@ class Report:
             grids.setdefault(one.grid, []).append(self._drawn(self._plan_of_map(one, True)))
         return list(grids.items())
 
+    def _shown(self, judgements: list[dict[str, Any]]) -> list[dict[str, Any]]:
+        """Judgements with texts in place of figures that have no error."""
+        return [{**each, "text": self._words.figure(texts.glare(each["value"]))} if each["figure"] == "UGR" else each
+                for each in judgements]
+
     def _judgements(self) -> list[dict[str, Any]]:
-        """Required and measured values side by side."""
+        """Required and measured values side by side, but for those of rooms."""
         target = self._record.get("target")
         if not target:
             return []
-        rows = [dict(each) for each in target["judgements"]]
+        of_rooms = [each for one in self._building.rooms for each in one.judgements]
+        rows = self._shown([each for each in target["judgements"] if each not in of_rooms])
         if target["ugr_limit"] > 0 and not any(each["figure"] == "UGR" for each in rows):
             rows.append({"grid": "", "figure": "UGR", "at_most": True, "required": target["ugr_limit"],
                          "text": self._words("see photile glare"), "met": None})
@@ -232,25 +292,22 @@ class Report:
             rows.append({"grid": "", "figure": "Ra", "at_most": False, "required": target["ra"],
                          "text": self._words.figure(f"{least:g}") + f", {text}" if least > 0 else text,
                          "met": least >= target["ra"] if least > 0 else None})
-        for each in rows:
-            if each["figure"] == "UGR" and "value" in each:
-                each["text"] = self._words.figure(texts.glare(each["value"]))
         return rows
 
     def _energy(self) -> Pairs:
         """The power of luminaires if all of their files state it, and LENI of an included year."""
         record, rows = self._record, []
         watts = [part["watts"] for part in record.get("photometry", [])]
-        area = (record.get("room") or {}).get("area", 0)
+        area = self._building.area or (record.get("room") or {}).get("area", 0)
         if watts and min(watts) > 0:
             power = sum(watts)
             rows.append(("installed power", f"{texts.grouped(power, 4)} W"))
             if area > 0:
-                mean = record["grids"][0]["statistics"]["Em"]["value"] or 0
+                mean = 0 if self._building.rooms else record["grids"][0]["statistics"]["Em"]["value"] or 0
                 more = f", {100 * power / area / mean:.2f} W/m\u00b2 / 100 lx" if mean > 0 else ""
                 rows.append(("power density", f"{power / area:.2f} W/m\u00b2{more}"))
         energy = self._included.kilowatt_hours
-        if energy > 0 and area > 0:
+        if energy > 0 and area > 0 and not self._building.rooms:
             rows.append(("LENI (EN 15193)",
                          f"{energy / area:.1f} kWh/(m\u00b2 a), {energy:.0f} kWh / a"))
         return [(name, self._words.figure(value)) for name, value in rows]
@@ -280,7 +337,12 @@ class Report:
         facts += record.get("sky", {}).items()
         return [*facts, ("program", f"photile {record['photile']}"), ("date", record["date"])]
 
-    def _tables(self) -> list[dict[str, Any]]:
+    def _results(self) -> list[Table]:
+        """What is included, and melanopic light."""
+        melanopic = melanopic_table(self._record)
+        return [*self._included.tables, *([melanopic] if melanopic else [])]
+
+    def _lists(self) -> list[Table]:
         """Luminaires, parts with totals, reflectances."""
         record, parts = self._record, self._luminaires.parts
         rows = [self._row(part.tag, part.pieces, part.lines(), part.lumens, part.watts, part.pieces)
@@ -290,19 +352,20 @@ class Report:
             rows.append(self._row("", sum(part.pieces for part in parts), [self._words("together")],
                                   sum(part.lumens for part in parts),
                                   sum(part.watts for part in parts) if all_known else 0))
+        rooms = self._building.rooms
+        room_of = {int(lamp["number"]): one.room.name for one in rooms for lamp in one.lamps}
         lamps = [[self._luminaires.tag(int(lamp["number"])), lamp["name"], lamp["kind"],
-                  texts.place(lamp["position"]), f"{texts.grouped(lamp['lumens'], 4)} lm"]
-                 for lamp in self._luminaires.rows]
+                  *([room_of.get(int(lamp["number"]), "")] if rooms else []), texts.place(lamp["position"]),
+                  f"{texts.grouped(lamp['lumens'], 4)} lm"] for lamp in self._luminaires.rows]
         surfaces = [[each["material"], f"{100 * each['reflectance']:.0f}%"]
                     for each in record.get("reflectances", [])]
         return [
-            {"heading": "Luminaires", "of": None, "words": (2,), "names": (0, 1), "rows": lamps,
-             "plan": self._plan_of_luminaires(), "columns": ["number", "name", "kind", "position (x, y, z), m", "luminous flux"]},
-            {"heading": "List of parts", "of": None, "words": (), "names": (0, 2), "rows": rows,
-             "kind": "parts", "columns": ["type", "pieces", "luminaire", "lumens each", "watts each",
-                                          "luminous flux", "power", "luminous efficacy"]},
-            {"heading": "Reflectances", "of": None, "words": (), "names": (0,), "rows": surfaces,
-             "columns": ["material", "reflectance"]}]
+            table("Luminaires", ["number", "name", "kind", *(["room"] if rooms else []), "position (x, y, z), m",
+                                 "luminous flux"], lamps, words=(2,), names=(0, 1, 3) if rooms else (0, 1),
+                  plan="" if rooms else self._plan_of_luminaires()),
+            table("List of parts", ["type", "pieces", "luminaire", "lumens each", "watts each", "luminous flux",
+                                    "power", "luminous efficacy"], rows, names=(0, 2), kind="parts"),
+            table("Reflectances", ["material", "reflectance"], surfaces, names=(0,))]
 
     @staticmethod
     def _row(tag: str, pieces: int, lines: list[str], lumens: float, watts: float,

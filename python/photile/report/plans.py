@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -31,6 +31,8 @@ dimensions_room = 2 * dimension_step + 14
 # upright or lying, millimetres.
 sheets = {"portrait": (180, 226), "landscape": (267, 143)}
 drawing_scales = (1, 2, 5, 10, 20, 25, 50, 100, 200, 500)  # of ISO 5455, and 1:25
+least_drawing = 60  # of which there is always one, millimetres
+shown_wall = 0.2  # metres beyond the outline of a room
 letter_width = 0.6  # the mean in common fonts without serifs, of their height
 most_written_isolines = 300
 
@@ -90,27 +92,36 @@ class Plan:
 
     luminaires   whose tags it has
     pages        of the sheets, to choose from
+    outline      rings around a room, metres along u and v, to show as a whole in place of the plan's own room
+    taken        height of the sheets that other things take, millimetres
     """
 
     def __init__(self, grid: dict[str, Any], values: list[float | None], title: str, colours: dict[str, Any],
                  words: Words | None = None, luminaires: Luminaires | None = None, small: bool = False,
-                 pages: Iterable[str] = tuple(sheets)) -> None:
+                 pages: Iterable[str] = tuple(sheets), outline: Sequence[Floats] = (), taken: float = 0) -> None:
         plane = grid["plane"]
         plan = grid.get("plan") or {}
         self._words, self._luminaires = words or Words(), luminaires or Luminaires({})
-        self.small, self._reach = small, float(plan.get("reach", 0))
+        self.small = small
         self._on_cells = on_cells(plane, values)
         self._rows, self._columns = self._on_cells.shape
         self._values = self._on_cells.ravel()
         self._bare = bool(np.isnan(self._values).all())
         self._size = np.array([np.linalg.norm(plane["u"]), np.linalg.norm(plane["v"])])
+        self._low = np.full(2, float(plan.get("reach", 0)))  # metres that are shown before the plane
+        beyond = self._low
+        if outline:
+            low, high = np.vstack(outline).min(axis=0), np.vstack(outline).max(axis=0)
+            plan = {**plan, "room": [low, high]}
+            beyond = np.maximum(beyond, high - self._size + shown_wall)
+            self._low = np.maximum(self._low, shown_wall - low)
         self._scale = Scale(fitted(colours, [self._values]))
         self._north = None if small else self._direction_of_north(plan)
         self._left, around = (margin, 0) if small else (dimensions_room, dimensions_room)
-        metres = self._size + 2 * self._reach
+        metres = self._size + self._low + beyond
         self.page, self.scale, self._per_metre = "portrait", "", 200 / max(metres)
         if not small:
-            scales = {page: drawing_scale(1000 * max(metres / self._room(page))) for page in pages}
+            scales = {page: drawing_scale(1000 * max(metres / self._room(page, taken))) for page in pages}
             self.page = min(scales, key=lambda page: scales[page])
             self._per_metre = 1000 * pixels_per_millimetre / scales[self.page]
             self.scale = f"1:{scales[self.page]:.0f}"
@@ -124,6 +135,7 @@ class Plan:
         self._writing = Writing()
         self.labels: list[Label] = []
         self._draw(grid, plane, plan)
+        self.outline = "".join(_path(self._at(ring), True) for ring in outline)
 
     def _draw(self, grid: dict[str, Any], plane: dict[str, Any], plan: dict[str, Any]) -> None:
         scale, cells = self._scale, np.flatnonzero(~np.isnan(self._values))
@@ -157,15 +169,15 @@ class Plan:
         row, legend = ruler_height if self._north is None else north_height, 0 if self._bare else legend_height
         return (0, max(row, legend)) if page == "landscape" else (row, legend)
 
-    def _room(self, page: str) -> Floats:
+    def _room(self, page: str, taken: float) -> Floats:
         """Millimetres for the drawing itself on a page."""
         beside = (dimensions_room + margin, title_height + dimensions_room + sum(self._foot_rows(page)))
-        room: Floats = np.array(sheets[page]) - np.array(beside) / pixels_per_millimetre
-        return room
+        room: Floats = np.array(sheets[page]) - np.array(beside) / pixels_per_millimetre - (0, taken)
+        return np.maximum(room, least_drawing)
 
     def _at(self, metres: Any) -> Floats:
         """Pixels of positions in metres along u and v from the plane's corner."""
-        places = (np.reshape(np.asarray(metres, float), (-1, 2)) + self._reach) * self._per_metre
+        places = (np.reshape(np.asarray(metres, float), (-1, 2)) + self._low) * self._per_metre
         return np.column_stack([self._left + places[:, 0],
                                 title_height + self._inner[1] - places[:, 1]])
 
@@ -224,6 +236,8 @@ class Plan:
     def _levels(self) -> list[float]:
         """Those of isolines."""
         known = self._values[~np.isnan(self._values)]
+        if self._scale.chosen:
+            return self._scale.chosen
         alone = self._scale.contours == "isolines"
         return self._scale.levels() if alone or not len(known) else illuminance_steps(min(known), max(known))
 
@@ -292,7 +306,7 @@ class Plan:
         origin = np.array(plane["origin"], float)
         found = [(x, y, anchor, self._words.figure("({:.2f}, {:.2f}, {:.2f}) m".format(*world)))
                  for x, y, anchor, world in (
-                     (low[0], low[1] + (11 if self._reach else -4), "start", origin),
+                     (low[0], low[1] + (11 if self._low.any() else -4), "start", origin),
                      (high[0], high[1] - 4, "end", origin + plane["u"] + plane["v"]))]
         for x, y, anchor, text in found:
             half = 0.5 * letter_width * 8 * len(text)
@@ -303,7 +317,7 @@ class Plan:
         found = []
         bottom, right, tick = title_height + self._inner[1], self._left + self._inner[0], 3
         for row, corners in enumerate([None if self._bare else [[0, 0], list(self._size)], plan.get("room")], 1):
-            if not corners:
+            if corners is None:
                 continue
             (ax, ay), (bx, by) = self._at(corners)
             if ax < self._left - 1 or bx > right + 1 or by < title_height - 1 or ay > bottom + 1:

@@ -68,6 +68,7 @@ class Scale:
         self.steps, self.decades = int(colours["steps"]), float(colours["decades"])
         self.contours = colours["contours"]
         self.label = colours["label"]
+        self.chosen = [float(level) for level in colours.get("levels", ())]  # levels of isolines in place of its own
         self._palette = colours["palette"].split()
 
     def value_at(self, share: float) -> float:
