@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -38,6 +38,13 @@ def _cells(columns: int, rows: int) -> Floats:
     return middles
 
 
+def _cells_of(plane: dict[str, Any]) -> NDArray[np.bool_]:
+    """Which cells of a plane have a point, (rows, columns)."""
+    cells = np.zeros((plane["rows"], plane["columns"]), bool)
+    cells.flat[plane["cells"]] = True
+    return cells
+
+
 @dataclass(frozen=True)
 class Room:
     """A room as ``photile measure`` finds it.
@@ -57,6 +64,9 @@ class Room:
         Sides of a cell of the floor, metres.
     floor : (rows, columns) array
         Whether a cell is floor, with furniture on it or not.
+    clear : (rows, columns) array
+        Whether nothing is in the way of a luminaire: no tall furniture, no beam. Its cells may be
+        smaller.
     walls : (k, 2, 2) array
         Both ends of the walls at the height of the working plane, on the plan.
     """
@@ -69,21 +79,21 @@ class Room:
     cell: Floats
     floor: NDArray[np.bool_]
     walls: Floats
+    clear: NDArray[np.bool_]
 
     @classmethod
     def of(cls, record: dict[str, Any]) -> Room:
-        """The room of the results of a working plane without a wall band and of the ceiling."""
+        """The room of the results of a working plane without a wall band and of cylinders 1 m above
+        the floor."""
         grids = {grid["name"]: grid for grid in record["grids"]}
-        working, ceiling = grids["working plane"], grids["ceiling"]["plane"]
+        working, metre = grids["working plane"], grids["cylindrical"]["plane"]
         plane = working["plane"]
-        columns, rows = plane["columns"], plane["rows"]
         origin, u, v = (np.array(plane[name]) for name in ("origin", "u", "v"))
         sides = np.array([np.linalg.norm(u), np.linalg.norm(v)])
         axes = np.array([u / sides[0], v / sides[1], np.cross(u, v) / sides.prod()])
-        ceiling_height = float(axes[2] @ (np.array(ceiling["origin"]) - origin))
-        floor = np.zeros((rows, columns), bool)
-        floor.flat[plane["cells"]] = True
-        cell = sides / (columns, rows)
+        floor_height = float(axes[2] @ (np.array(metre["origin"]) - origin)) - 1.0
+        floor = _cells_of(plane)
+        cell = sides / floor.shape[::-1]
         for blank in working.get("blank", ()):  # there is furniture on them
             x, y = np.floor(axes[:2] @ (np.array(blank["position"]) - origin) / cell).astype(int)
             floor[y, x] = True
@@ -91,21 +101,41 @@ class Room:
         for line in working["plan"]["walls"].split("M")[1:]:  # an SVG path
             corners = [[float(x) for x in corner.split()] for corner in line.split("L")]
             walls += zip(corners, corners[1:])
-        return cls(origin, axes, ceiling_height - record["room"]["height"], ceiling_height,
-                   record["room"]["area"], cell, floor, np.array(walls, float).reshape(-1, 2, 2))
+        return cls(origin, axes, floor_height, floor_height + record["room"]["height"],
+                   record["room"]["area"], cell, floor, np.array(walls, float).reshape(-1, 2, 2),
+                   np.ones((1, 1), bool))
+
+    def with_obstacles(self, record: dict[str, Any]) -> Room:
+        """With what is in the way at the heights of the planes of these results, which are those of
+        the same floor."""
+        return replace(self, clear=np.logical_and.reduce([_cells_of(grid["plane"])
+                                                          for grid in record["grids"]]))
+
+    def spacing(self, cells: int) -> float:
+        """Metres that make so many cells along the longer side."""
+        return float(max(self.cell * self.floor.shape[::-1])) / cells
 
     def in_file(self, plan: Floats, height: float) -> list[float]:
         """Coordinates in the scene's file of a position at a height above the working plane."""
         point = self.origin + np.array([*plan, height]) @ self.axes
         return [round(float(x), 4) for x in point]
 
+    def _at(self, cells: NDArray[np.bool_], plan: Floats) -> NDArray[np.bool_]:
+        """What cells of the rectangle around the floor have at positions (..., 2) on the plan."""
+        rows, columns = cells.shape
+        cell = self.cell * self.floor.shape[::-1] / (columns, rows)
+        x, y = np.moveaxis(np.floor(plan / cell).astype(int), -1, 0)
+        inside = (x >= 0) & (y >= 0) & (x < columns) & (y < rows)
+        held: NDArray[np.bool_] = inside & cells[y.clip(0, rows - 1), x.clip(0, columns - 1)]
+        return held
+
     def holds(self, plan: Floats) -> NDArray[np.bool_]:
         """Whether there is floor at positions (..., 2) on the plan."""
-        rows, columns = self.floor.shape
-        x, y = np.moveaxis(np.floor(plan / self.cell).astype(int), -1, 0)
-        inside = (x >= 0) & (y >= 0) & (x < columns) & (y < rows)
-        held: NDArray[np.bool_] = inside & self.floor[y.clip(0, rows - 1), x.clip(0, columns - 1)]
-        return held
+        return self._at(self.floor, plan)
+
+    def is_clear(self, plan: Floats) -> NDArray[np.bool_]:
+        """Whether there is floor, and a luminaire is free of furniture."""
+        return self.holds(plan) & self._at(self.clear, plan)
 
     def wall_angle(self) -> float:
         """Radians, -pi/4 to pi/4, that the longest of the walls is turned on the plan, or a wall
@@ -219,13 +249,13 @@ class Designer:
         return Arrangement(f"{number_of}, {text}", count, entries)
 
     def _kept(self, columns: int, rows: int) -> NDArray[np.bool_]:
-        """Which luminaires of a field, (rows, columns), are over the floor: all floor near them,
-        and most of the field's cell around them."""
+        """Which luminaires of a field, (rows, columns), are over the floor: all floor near them, with
+        nothing in their way, and most of the field's cell around them."""
         spacing = self.size / (columns, rows)
         middles = (self._low + _cells(columns, rows) * spacing)[:, :, None]
         cell = (_cells(6, 6).reshape(-1, 2) / 6 - 0.5) * spacing
         near = (_cells(3, 3).reshape(-1, 2) - 1.5) * np.minimum(spacing / 4, _to_border)
-        clear = self._room.holds(self._on_plan(middles + near)).all(axis=-1)
+        clear = self._room.is_clear(self._on_plan(middles + near)).all(axis=-1)
         share = self._room.holds(self._on_plan(middles + cell)).mean(axis=-1)
         kept: NDArray[np.bool_] = clear & (share >= _least_floor)
         return kept
@@ -233,15 +263,16 @@ class Designer:
     def field(self, columns: int, rows: int) -> Arrangement:
         """Columns along the longest wall and rows across, half a spacing from the sides of the
         rectangle around the floor. A luminaire is left out that is beyond the floor or at its
-        border, or with less floor than three quarters of the spacing squared around it.
+        border, in furniture or right above it, or with less floor than three quarters of the
+        spacing squared around it.
 
         Errors: UsageError where none is left.
         """
         kept, spacing = self._kept(columns, rows), self.size / (columns, rows)
         count = int(kept.sum())
         if not count:
-            raise UsageError(f"no luminaire of a field of {columns} x {rows} is over the floor; "
-                             "give more columns or rows")
+            raise UsageError(f"no luminaire of a field of {columns} x {rows} is over the floor "
+                             "and free of furniture; give more columns or rows")
         singly = [[row, column, 1, 1] for row, column in np.argwhere(kept).tolist()]
         entries = []
         for row, column, down, along in _blocks(kept) if self._aim is None else singly:
@@ -259,14 +290,14 @@ class Designer:
     def circle(self, count: int, radius: float) -> Arrangement:
         """Around the middle of the rectangle around the floor; C0 is along the radius or across.
 
-        Errors: UsageError where a luminaire is not over the floor.
+        Errors: UsageError where a luminaire is not over the floor, or has furniture in its way.
         """
         middle = self._on_plan(self._low + self.size / 2)
         entries = []
         for angle in self._angle + 2 * math.pi * np.arange(count) / count:
             plan = middle + radius * np.array([math.cos(angle), math.sin(angle)])
-            if not self._room.holds(plan):
-                raise UsageError(f"a circle of {radius:g} m reaches beyond the floor; "
+            if not self._room.is_clear(plan):
+                raise UsageError(f"a circle of {radius:g} m reaches beyond the floor or into furniture; "
                                  "make its radius smaller")
             entries.append(self._entry(plan, (angle + math.pi) % (2 * math.pi) - math.pi))
         return self._arrangement(f"on a circle of {radius:g} m", count, entries)

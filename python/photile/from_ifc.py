@@ -19,12 +19,13 @@ from typing import Any
 
 import numpy as np
 
-from .converters import exit_code, in_child, luminaire_rotation, one_line, unique, write_files
+from .converters import exit_code, luminaire_rotation, one_line, unique, write_files
 from .errors import InputError, UsageError
 from .ifc_building import (
     Building,
     Fixture,
     Room,
+    in_ifc_child,
     in_scene,
     number_of,
     read,
@@ -37,14 +38,13 @@ __all__ = ["Conversion", "convert"]
 _most_photometry = 64 << 20  # bytes of a photometric file, as in limits.hpp
 _view = 60.0  # degrees from the top to the bottom of a room's picture
 _most_lights = 8  # that tables of all rooms show apart; more are one group in the command
-_least_covered = 0.75  # of a room's floor by its grid: rooms below it are named
 
 
 @dataclass(frozen=True)
 class Conversion:
     """What was done."""
 
-    command: list[str]  # words of the command that measures all rooms
+    commands: list[list[str]]  # words of those that measure all rooms, and that rate their glare
     summary: list[str]  # lines about what was written
     warnings: list[str]  # lines about what was left out
 
@@ -207,10 +207,10 @@ def _summary(building: Building, chosen: list[Room], lit: int) -> list[str]:
     narrow = [room.name for room in chosen if room.wall_band < wall_bands[0]]
     if narrow:
         lines.append(f"rooms with a wall band below {wall_bands[0]} m: {', '.join(narrow)}")
-    angled = [f"{room.name} {room.covered:.0%}" for room in chosen if room.covered < _least_covered]
-    if angled:
-        lines.append("rooms whose grid, a rectangle, covers only a part; add others to the file of grids: "
-                     + ", ".join(angled))
+    if building.site:
+        latitude, longitude = building.site
+        lines.append(f"site: {latitude:g} degrees north, {longitude:g} east; "
+                     f"--site {latitude:g},{longitude:g},TZ with the hours ahead of UTC")
     kinds = {fixture.kind for fixture in building.fixtures}
     return [*lines, f"triangles: {building.triangles} of {building.elements} elements, in the colours of "
             "drawings; --reflectance MATERIAL=VALUE sets what you know",
@@ -219,7 +219,8 @@ def _summary(building: Building, chosen: list[Room], lit: int) -> list[str]:
             f"fixtures: {len(building.fixtures)} of {len(kinds)} types, {lit} with photometry"]
 
 
-def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[str, Path]]) -> Conversion:
+def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[str, Path]],
+            observers: bool = False) -> Conversion:
     """Write buildings as a scene, its rooms and its fixtures.
 
     Parameters
@@ -234,6 +235,8 @@ def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[st
         Patterns of numbers and names of rooms; none for all.
     ies : list of pairs
         Pattern of types of fixtures, and their photometric file.
+    observers : bool
+        Whether to write observers of each room into the folder ``.observers``.
 
     Errors: InputError, UsageError, OutputError, ImportError.
     """
@@ -247,34 +250,39 @@ def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[st
 
     camera = building.gltf.camera(_view)
     # Without --camera the first one is used.
-    for room in sorted(chosen, key=lambda room: -float(room.plan.area)):
+    for room in sorted(chosen, key=lambda room: -float(room.outline.area)):
         building.gltf.node(name=room.name, camera=camera, matrix=room.camera())
     outputs = {**photometry.contents, scene: building.gltf.glb()}
 
     def beside(ending: str, content: bytes) -> str:
-        path = scene.with_name(scene.stem + ending)
+        path = scene.parent / (scene.stem + ending)
         outputs[path] = content
         return str(path)
 
-    command = ["photile", "measure", str(scene)]
-    report = ["-o", str(scene.with_suffix(".html"))]
+    places, report = ["--plane", f"floor+{working_plane}"], []
     if chosen:
-        report = ["--include", beside(".rooms.json", _json_lines([room.record() for room in chosen])), *report]
-        command += ["--grid", beside(".grids.json", _json_lines([room.grid() for room in chosen]))]
-    else:
-        command += ["--plane", f"floor+{working_plane}"]
+        places = ["--grid", beside(".grids.json", _json_lines([room.grid() for room in chosen]))]
+        report = ["--include", beside(".rooms.json", _json_lines([room.record() for room in chosen]))]
     if building.fixtures:
         beside(".luminaires.csv", _schedule(building.fixtures))
-    command += (["--luminaires", beside(".luminaires.json", _json_lines(luminaires))] if luminaires
-                else ["--sky", "overcast=10000"])
-    if len(luminaires) > _most_lights:
-        command += ["--light-group", "*=luminaires"]
+    light = (["--luminaires", beside(".luminaires.json", _json_lines(luminaires))] if luminaires
+             else ["--sky", "overcast=10000"])
+    if building.north:
+        light += ["--set", f"north={building.north:g}"]
+    groups = ["--light-group", "*=luminaires"] if len(luminaires) > _most_lights else []
+    commands = [["photile", "measure", str(scene), *places, *light, *groups, *report, "-o",
+                 str(scene.with_suffix(".html"))]]
+    if observers and chosen:
+        views = [f"--observers={beside(f'.observers/{room.file}.pts', room.observers().encode())}"
+                 for room in chosen]
+        commands.append(["photile", "glare", str(scene), *views, "--ratings",
+                         "ugr" if luminaires else "dgp", *light, "-o", str(scene.with_suffix(".glare.json"))])
     inputs = {path.resolve() for path in (*files, *(file for _, file in ies))}
     for path in outputs:
         if path.resolve() in inputs:
             raise UsageError(f"{path}: this file is read; name another one to write")
     write_files(outputs)
-    return Conversion([*command, *report], _summary(building, chosen, len(luminaires)), building.warnings)
+    return Conversion(commands, _summary(building, chosen, len(luminaires)), building.warnings)
 
 
 def _profile(text: str) -> tuple[str, Path]:
@@ -300,18 +308,18 @@ def main() -> int:
     parser.add_argument("--ies", action="append", default=[], type=_profile, metavar="TYPE=FILE",
                         help="photometric file (.ies, .ldt) of the fixtures whose type fits a pattern; "
                              "repeatable")
+    parser.add_argument("--observers", action="store_true",
+                        help="write four observers of each room, too, and print the command that rates "
+                             "their glare")
     options = parser.parse_args()
 
     def work() -> None:
-        done = convert(options.ifc, options.output, options.rooms, options.ies)
+        done = convert(options.ifc, options.output, options.rooms, options.ies, options.observers)
         for line in [*(f"warning: {line}" for line in dict.fromkeys(done.warnings)), *done.summary]:
             print(line, file=sys.stderr)
-        print(shlex.join(done.command))
+        print("\n".join(map(shlex.join, done.commands)))
 
-    files = ", ".join(map(str, options.ifc))
-    return in_child(lambda: exit_code("photile.from_ifc", work),
-                    f"photile.from_ifc: error: {files}: ifcopenshell ended without a result; the file is "
-                    "damaged, or needs more memory than there is, or an hour: export it again, or a part of it")
+    return in_ifc_child("photile.from_ifc", options.ifc, lambda: exit_code("photile.from_ifc", work))
 
 
 if __name__ == "__main__":

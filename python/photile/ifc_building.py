@@ -24,10 +24,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .converters import Gltf, matt, one_line, unique
+from .converters import Gltf, in_child, matt, one_line, unique
 from .errors import InputError
 
-__all__ = ["Building", "Fixture", "Room", "in_scene", "number_of", "read", "wall_bands", "working_plane"]
+__all__ = ["Building", "Fixture", "Room", "ifc_module", "in_ifc_child", "in_scene", "most_above_ceiling",
+           "number_of", "open_ifc", "read", "wall_bands", "working_plane"]
 
 # A file of a stranger may ask for more than a machine has.
 _most_bytes = 1 << 30  # of an IFC file
@@ -46,8 +47,11 @@ _grey = 0.5  # reflectance of what has no style, whose material has the name of 
 working_plane = 0.75  # metres above the floor
 wall_bands = (0.5, 0.25, 0.1, 0.0)  # metres; narrow rooms have the first that leaves something
 _least_height = 1.2  # metres of a room for people, as least_room of floor.hpp
+_least_rectangle = 0.9  # of a floor by a rectangle, which then is its grid
+_near_floor = 0.3  # metres above and below a room's floor, where that of the building is
 _least_covered = 0.75  # of a room by elements above it, below which it has no ceiling
-_eye = 1.6  # metres above the floor
+most_above_ceiling = 0.5  # metres that a room's luminaires may be above its body
+_eye, _seated_eye = 1.6, 1.2  # metres above the floor
 _off_body = 0.005  # metres from a fixture's body to its luminous opening
 _least_opening = 0.05  # metres, of a luminaire whose file calls it a point
 _lumens = ("LuminousFlux", "Luminous Flux", "TotalLuminousFlux", "ContributedLuminousFlux")
@@ -72,38 +76,71 @@ class Room:
     number: str
     long_name: str
     storey: str
-    plan: Any  # shapely's polygon of the outline
+    global_id: str  # of the IfcSpace
+    required: float | None  # lux, on average
+    plan: Any  # shapely's polygon that the body covers
+    outline: Any  # that of the floor where people stand: with something below, and 1.2 m of height
     floor: float  # height of the floor
     height: float  # of the body
-    wall_band: float  # left out along the outline
-    task: Any  # the largest rectangle without the wall band
-    covered: float  # fraction of the floor without the wall band that the rectangle covers
+    wall_band: float = 0.0  # left out along the outline
+    measured: Any = None  # shapely's polygons without the wall band
+    task: Any = None  # the largest rectangle in them
     doubt: str = ""  # why nobody measures it: "without a ceiling"
+
+    @property
+    def file(self) -> str:
+        """Its name as that of a file."""
+        return re.sub(r"[^\w .+-]", "_", self.name)
 
     @property
     def inside(self) -> Vector:
         """A point well inside."""
-        return np.array([*self.task.middle, self.floor + min(_eye, self.height / 2)])
+        middle = self.task.middle if self.task else self.outline.point_on_surface().coords[0]
+        return np.array([*middle, self.floor + min(_eye, self.height / 2)])
 
     def holds(self, point: Vector) -> bool:
         """Whether a point is in the room, or in the void above its ceiling."""
         above = point[2] - self.floor
-        return -0.1 <= above <= self.height + 0.5 and bool(_shapely().contains_xy(self.plan, *point[:2]))
+        return (-0.1 <= above <= self.height + most_above_ceiling
+                and bool(_shapely().contains_xy(self.plan, *point[:2])))
 
     def record(self) -> dict[str, Any]:
         """The room in ``rooms.json``."""
-        border, *holes = ([in_scene([*corner, self.floor]) for corner in ring.coords[:-1]]
-                          for ring in (self.plan.exterior, *self.plan.interiors))
+        def ring(line: Any) -> list[list[float]]:
+            return [in_scene([*corner, self.floor]) for corner in line.coords[:-1]]
+
         return {"name": self.name, "number": self.number, "long_name": self.long_name,
-                "storey": self.storey, "area": round(self.plan.area, 4), "height": round(self.height, 4),
+                "storey": self.storey, "area": round(self.outline.area, 4), "height": round(self.height, 4),
                 "floor": round(self.floor, 4), "inside": in_scene(self.inside),
-                "wall_band": self.wall_band, "outline": border, "holes": holes}
+                "wall_band": self.wall_band, "outline": ring(self.outline.exterior),
+                "holes": [ring(hole) for hole in self.outline.interiors], "plan": ring(self.plan.exterior),
+                "required_illuminance": self.required, "global_id": self.global_id,
+                "observers": self.file}
 
     def grid(self) -> dict[str, Any]:
-        """The room's working plane in a file of ``--grid``; photile lays the points of EN 12464-1."""
-        return {"name": self.name,
-                "origin": in_scene([*self.task.origin, self.floor + working_plane]),
-                "u": in_scene([*self.task.u, 0]), "v": in_scene([*self.task.v, 0])}
+        """The room's working plane in a file of ``--grid``; photile lays the points of EN 12464-1.
+
+        The plane of a room that is no rectangle has an outline, and the spacing of the largest rectangle:
+        that of a whole ring of corridors would miss them.
+        """
+        height = self.floor + working_plane
+        plane: dict[str, Any] = {"name": self.name}
+        area = self.task
+        if area.area < _least_rectangle * self.measured.area:
+            ring = _plans().one_ring(self.measured.simplify(0.01))  # the reader takes 1000 corners
+            area = area.around(ring)
+            plane |= {"spacing": round(self.task.spacing, 4), "outline": area.coordinates(ring).round(3).tolist()}
+        return plane | {"origin": in_scene([*area.origin, height]), "u": in_scene([*area.u, 0]),
+                        "v": in_scene([*area.v, 0])}
+
+    def observers(self) -> str:
+        """Lines of a file of ``--observers``: people who sit at the middles of the grid's rectangle and look
+        across the room, as the observers of UGR tables do (CIE 190)."""
+        lines = []
+        for side in (self.task.u, -self.task.u, self.task.v, -self.task.v):
+            eye = in_scene([*(self.task.middle - side / 2), self.floor + _seated_eye])
+            lines.append(" ".join(f"{x:g}" for x in eye + in_scene([*side / np.linalg.norm(side), 0])))
+        return "\n".join([*lines, ""])
 
     def camera(self) -> list[float]:
         """glTF's matrix of a view along the room."""
@@ -180,21 +217,38 @@ class Building:
     warnings: list[str] = field(default_factory=list)
     elements: int = 0
     triangles: int = 0
+    north: float | None = None  # degrees clockwise from y; None where no file tells
+    site: tuple[float, float] | None = None  # degrees north and east
 
 
 def _shapely() -> Any:
     return importlib.import_module("shapely")
 
 
-def _ifc(module: str = "") -> Any:
+def _plans() -> Any:
+    return importlib.import_module("photile.floor_plans")  # needs shapely
+
+
+def ifc_module(module: str = "") -> Any:
+    """A module of ifcopenshell, ".guid". Errors: ImportError with the remedy."""
     try:
         return importlib.import_module(f"ifcopenshell{module}")
     except ImportError as missing:
         raise ImportError(f"{missing}; pip install ifcopenshell") from None
 
 
-def _open(file: Path) -> Any:
-    """Errors: InputError."""
+def in_ifc_child(program: str, files: list[Path], work: Callable[[], int]) -> int:
+    """Do work with IFC files in a process of its own. Returns its exit code.
+
+    program   "photile.from_ifc"
+    """
+    return in_child(work, f"{program}: error: {', '.join(map(str, files))}: ifcopenshell ended without a "
+                          "result; the file is damaged, or needs more memory than there is, or an hour: "
+                          "export it again, or a part of it")
+
+
+def open_ifc(file: Path) -> Any:
+    """The model of an IFC file. Errors: InputError."""
     try:
         if not file.is_file():
             raise InputError(f"{file}: there is no such file; name an IFC file")
@@ -208,7 +262,7 @@ def _open(file: Path) -> Any:
                          "unpack .ifczip, and export .ifcxml again")
     if size > _most_bytes:
         raise InputError(f"{file}: {size} bytes, more than {_most_bytes}; export a part of the building")
-    ifc = _ifc()
+    ifc = ifc_module()
     try:
         return ifc.open(str(file), format=".ifc")  # whatever its name: others unpack without bounds
     except Exception as error:  # ifcopenshell raises what it likes on damaged files
@@ -283,7 +337,7 @@ def _bodies(model: Any, elements: list[Any], title: str, most: int) -> list[_Pla
     """
     if not elements:
         return []
-    geom, shape_of = _ifc(".geom"), _ifc(".util.shape")
+    geom, shape_of = ifc_module(".geom"), ifc_module(".util.shape")
     iterator = geom.iterator(geom.settings(), model, os.cpu_count() or 1, include=elements)
     bodies: dict[str, _Body] = {}
     placed = []
@@ -337,7 +391,7 @@ def number_of(value: Any) -> float | None:
 
 def _property(element: Any, names: tuple[str, ...]) -> float | None:
     """The first number above 0 of these properties of an element or its type."""
-    values = {name: value for properties in _ifc(".util.element").get_psets(element).values()
+    values = {name: value for properties in ifc_module(".util.element").get_psets(element).values()
               for name, value in properties.items()}
     numbers = (number_of(values[name]) for name in names if name in values)
     return next((number for number in numbers if number is not None and number > 0), None)
@@ -388,8 +442,28 @@ def _pane(name: str, transmittance: float) -> dict[str, Any]:
                            "KHR_materials_ior": {"ior": _index}}}
 
 
+def _north(model: Any) -> float | None:
+    """Degrees clockwise from the y axis."""
+    for context in model.by_type("IfcGeometricRepresentationContext", include_subtypes=False):
+        if context.TrueNorth:
+            x, y = context.TrueNorth.DirectionRatios[:2]
+            return round(math.degrees(math.atan2(x, y)), 3) + 0.0
+    return None
+
+
+def _site(model: Any) -> tuple[float, float] | None:
+    """Degrees north and east."""
+    for site in model.by_type("IfcSite"):
+        if site.RefLatitude and site.RefLongitude:
+            # Degrees, minutes, seconds and their millionths, all of one sign.
+            latitude, longitude = (sum(part / size for part, size in zip(angle, (1, 60, 3600, 3.6e9)))
+                                   for angle in (site.RefLatitude, site.RefLongitude))
+            return round(latitude, 4), round(longitude, 4)
+    return None
+
+
 def _storey(element: Any) -> str:
-    util = _ifc(".util.element")
+    util = ifc_module(".util.element")
     for _ in range(100):  # a damaged file may hold itself
         if element is None or element.is_a("IfcBuildingStorey"):
             break
@@ -409,6 +483,10 @@ class _Reader:
 
     def add(self, model: Any, title: str) -> None:
         """Errors: InputError where the file asks for more than the limits."""
+        if self.building.north is None:
+            self.building.north = _north(model)
+        if self.building.site is None:
+            self.building.site = _site(model)
         self._add_elements(model, title, self._add_fixtures(model, Path(title).parent))
         self._add_rooms(model, title)
 
@@ -455,7 +533,7 @@ class _Reader:
             building.warnings.append(f"{title}: {len(lost)} elements whose bodies have no triangles are "
                                      f"left out: {names}{', ...' if len(lost) > 3 else ''}")
 
-    def doubt_of(self, room: Room) -> str:
+    def _doubt_of(self, room: Room) -> str:
         """Why nobody would measure a room, such as one on a roof; "" = he would."""
         if room.height < _least_height:
             return f"lower than {_least_height} m"
@@ -481,43 +559,66 @@ class _Reader:
 
     def _add_rooms(self, model: Any, title: str) -> None:
         spaces = [space for space in model.by_type("IfcSpace")
-                  if not any(part.is_a("IfcSpace") for part in _ifc(".util.element").get_parts(space))]
+                  if not any(part.is_a("IfcSpace") for part in ifc_module(".util.element").get_parts(space))]
         placed = _bodies(model, spaces, f"{title}: rooms", _most_triangles)
+        lux = ifc_module(".util.unit").calculate_unit_scale(model, "ILLUMINANCEUNIT")
         if len(placed) < len(spaces):
             self.building.warnings.append(f"{title}: {len(spaces) - len(placed)} rooms (IfcSpace) have no "
                                           "body and are left out")
-        rooms = [room for one in placed if (room := self._room(one)) is not None]
+        rooms = [room for one in placed if (room := self._room(one, lux)) is not None]
         # A file of another discipline may repeat rooms.
         rooms = [room for room in rooms if not any(known.number == room.number and known.holds(room.inside)
                                                    for known in self.building.rooms)]
-        for room in sorted(rooms, key=lambda room: (round(room.floor, 1), room.name)):
-            name = unique(room.name or "room", self._rooms)
-            self.building.rooms.append(dataclasses.replace(room, name=name))
+        self.building.rooms += sorted(rooms, key=lambda room: (round(room.floor, 1), room.name))
 
-    def _room(self, placed: _Placed) -> Room | None:
-        plans = importlib.import_module("photile.floor_plans")  # needs shapely
-        space, vertices = placed.element, placed.vertices
+    def _room(self, placed: _Placed, lux: float) -> Room | None:
+        """A room without its grid."""
+        plans = _plans()
+        space, vertices, triangles = placed.element, placed.vertices, placed.body.triangles
         number, long_name = one_line(space.Name or ""), one_line(space.LongName or "")
         name = number if long_name in number else f"{number} {long_name}".strip()
-        floor = plans.floor_of(vertices, placed.body.triangles)
-        if floor is None:
+        floor = plans.floor_height(vertices, triangles)
+        height = float(vertices[:, 2].max()) - floor
+        outline = plans.section(vertices, triangles, floor + min(_least_height, height / 2))
+        if outline is None:
             self.building.warnings.append(f"room '{name}' has no floor and is left out")
             return None
-        outline, level = floor
-        for band in wall_bands:
-            inset = plans.inset(outline, band)
-            task = plans.largest_rectangle(inset) if inset is not None else None
-            if task is not None:
-                break
-        else:
-            self.building.warnings.append(f"room '{name}' is too small for a grid and is left out")
-            return None
-        return Room(name, number, long_name, _storey(space), outline, level,
-                    float(vertices[:, 2].max()) - level, band, task, task.area / inset.area)
+        required = _property(space, ("Illuminance",))
+        return Room(name or "room", number, long_name, _storey(space), space.GlobalId,
+                    required and required * lux, plans.shadow_of(vertices, triangles), outline, floor,
+                    height)
+
+    def finish_rooms(self) -> None:
+        """Give rooms their grids, now that all floors are known, and names that keep them apart."""
+        rooms, self.building.rooms = self.building.rooms, []
+        for room in rooms:
+            outline = _plans().without_voids(room.outline, self._floors_of(room))
+            for band in wall_bands:
+                measured = _plans().inset(outline, band)
+                task = _plans().largest_rectangle(measured)
+                if task is not None:
+                    break
+            else:
+                self.building.warnings.append(f"room '{room.name}' is too small for a grid and is left out")
+                continue
+            room = dataclasses.replace(room, name=unique(room.name, self._rooms), outline=outline,
+                                       measured=measured, wall_band=band, task=task)
+            self.building.rooms.append(dataclasses.replace(room, doubt=self._doubt_of(room)))
+
+    def _floors_of(self, room: Room) -> Vector:
+        """What elements have at a room's floor, as triangles (m, 3, 3)."""
+        low, high = room.floor - _near_floor, room.floor + _near_floor
+        left, below, right, ahead = room.outline.bounds
+        found = [np.empty((0, 3, 3))]
+        for placed, lowest, highest in self._elements:
+            if (lowest < (right, ahead, high)).all() and (highest > (left, below, low)).all():
+                corners = placed.vertices[placed.body.triangles]
+                found.append(_plans().between(corners, low, high))
+        return np.concatenate(found)
 
     def _add_fixtures(self, model: Any, folder: Path) -> dict[int, list[Fixture]]:
         """Fixtures by their elements' numbers, still without bodies."""
-        element_of, unit = _ifc(".util.element"), _ifc(".util.unit")
+        element_of, unit = ifc_module(".util.element"), ifc_module(".util.unit")
         scale = unit.calculate_unit_scale(model)
         power = unit.calculate_unit_scale(model, "POWERUNIT")
         degrees = math.degrees(unit.calculate_unit_scale(model, "PLANEANGLEUNIT"))
@@ -569,12 +670,12 @@ def _placement(element: Any) -> Vector:
     """Of an element, in the file's unit."""
     if element.ObjectPlacement is None:
         return np.eye(4)
-    return np.array(_ifc(".util.placement").get_local_placement(element.ObjectPlacement), float)
+    return np.array(ifc_module(".util.placement").get_local_placement(element.ObjectPlacement), float)
 
 
 def _sources(element: Any) -> Iterator[tuple[Any, Vector]]:
     """The goniometric light sources of an element, and their axes in the file's unit."""
-    util = _ifc(".util.placement")
+    util = ifc_module(".util.placement")
     for shape in element.Representation.Representations if element.Representation else ():
         for item in shape.Items:
             items, inner = [item], np.eye(4)
@@ -595,7 +696,7 @@ def read(files: list[Path]) -> Building:
     reader = _Reader()
     building = reader.building
     for file in files:
-        model = _open(file)
+        model = open_ifc(file)
         try:
             reader.add(model, str(file))
         except (InputError, ImportError, MemoryError):
@@ -604,7 +705,7 @@ def read(files: list[Path]) -> Building:
             raise InputError(f"{file}: damaged: {error}; export it again") from None
     if not building.triangles:
         raise InputError(f"{files[0]}: no element has triangles; export bodies, not only lines")
-    building.rooms = [dataclasses.replace(room, doubt=reader.doubt_of(room)) for room in building.rooms]
+    reader.finish_rooms()
     for fixture in building.fixtures:
         fixture.room = next((room for room in building.rooms if room.holds(fixture.position)), None)
     return building

@@ -29,7 +29,9 @@ __all__ = ["main"]
 _below_ceiling = 0.005  # metres, as of "position": "ceiling"
 _spacing_criterion = 1.5  # greatest spacing over the height above the plane
 _most_measurements = 10
-_survey_cells = 80  # along the longer side of a floor that is no rectangle
+_survey_cells = 80  # along the longer side of a floor that is no rectangle, and of furniture
+_free_below = 0.3  # metres that luminaires are free of furniture below
+_off = 0.02  # metres below luminaires that touch the ceiling, where points do not
 
 
 def _verdict(met: bool) -> str:
@@ -141,23 +143,38 @@ class _Command:
         layers = {light.get("group") or light["name"] for light in info["lights"]}
         self._off = [word for name in sorted(layers) for word in ("--light", f"{name}=off")]
 
-    def _record(self, *arguments: str) -> dict[str, Any]:
-        given = [f"--{name}={value}" for name in ("plane", "inside", "target", "maintenance")
-                 if (value := getattr(self._options, name)) is not None]
+    def _record(self, *arguments: str, **others: str) -> dict[str, Any]:
+        values = {name: getattr(self._options, name)
+                  for name in ("plane", "inside", "target", "maintenance")} | others
+        given = [f"--{name}={value}" for name, value in values.items() if value is not None]
         _photile("measure", self._options.scene, "-q", "-o", str(self.results), *given,
                  *arguments)
         record: dict[str, Any] = json.loads(self.results.read_text(encoding="utf-8"))
         return record
 
+    def _survey(self, *arguments: str, **others: str) -> dict[str, Any]:
+        """Of the floor; the light, that of a sky, does not matter."""
+        return self._record("--wall-band", "0", "--sky", "uniform=1000", "--rays", "1", "--repeats",
+                            "2", "--photons", "1000", *self._settings, *arguments, **others)
+
     def survey(self) -> Room:
-        """The room; the light, that of a sky, does not matter."""
-        words = ["--wall-band", "0", "--ceiling", "--sky", "uniform=1000", "--rays", "1",
-                 "--repeats", "2", "--photons", "1000", *self._settings]
-        room = Room.of(self._record(*words))
+        """The room. Errors: Failure where there is none."""
+        metre = ["--cylindrical-at", "floor+1"]
+        record = self._survey(*metre)
+        if "room" not in record:
+            raise report.Failure(report.INPUT, f"{self._options.scene}: no room with a ceiling is at "
+                                               "the camera; give a point in a room by --inside")
+        room = Room.of(record)
         if room.floor.all() and not room.wall_angle():
             return room
-        spacing = max(room.cell * room.floor.shape[::-1]) / _survey_cells
-        return Room.of(self._record(*words, "--spacing", f"{spacing:.4g}"))
+        return Room.of(self._survey(*metre, "--spacing", f"{room.spacing(_survey_cells):.4g}"))
+
+    def with_obstacles(self, room: Room, height: float) -> Room:
+        """With what is in the way of luminaires at a height above the plane, and just below them."""
+        above_floor = height - room.floor_height
+        low, high = (f"floor+{max(above_floor - below, 0.1):.4g}" for below in (_free_below, _off))
+        return room.with_obstacles(self._survey("--cylindrical-at", low, "--spacing",
+                                                f"{room.spacing(_survey_cells):.4g}", plane=high))
 
     def measure(self, arrangement: Arrangement) -> _Measured:
         self._trial.write_text(_list_of(arrangement), encoding="utf-8")
@@ -368,6 +385,7 @@ def _lay_out(options: argparse.Namespace, luminaire: dict[str, Any],
     while luminaire["name"] in command.lights:
         luminaire["name"] += "_new"
     height = _height(options, room)
+    room = command.with_obstacles(room, height)
     designer = Designer(room, height, luminaire, options.across, options.aim)
     length, width = designer.size
     index = length * width / (height * (length + width))  # CIE 52:1982

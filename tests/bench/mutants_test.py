@@ -1,16 +1,10 @@
 #!/usr/bin/python3
-"""Tests of bench/mutants, whose list has to follow the files that it changes.
+"""Tests of bench/mutants, whose list has to follow the files that it changes."""
 
-    tests/bench/mutants_test.py
-"""
-
-import pathlib
 import re
-import sys
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bench"))
+from records import ROOT
 from mutants import mutants
 from mutants.chosen import MUTANTS, Mutant
 

@@ -9,14 +9,12 @@ import contextlib
 import io
 import json
 import math
-import pathlib
 import sys
 import tempfile
 import time
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "bench"))
+from records import ROOT
 try:
     from tools import gltf_meshes, one_picture, picture_error
     import numpy as np
@@ -36,17 +34,17 @@ def row(tool, processor, rel_mse, frame=None):
 
 
 class Curves(unittest.TestCase):
+    POINTS = [1, 100], [0.1, 0.001]  # error = 0.1 / time
+
     def test_times_and_errors_between_points_are_those_of_powers(self):
-        times, errors = [1, 100], [0.1, 0.001]  # error = 0.1 / time
-        self.assertAlmostEqual(quality_report.time_to(0.01, times, errors), 10)
-        self.assertAlmostEqual(quality_report.error_at(10, times, errors), 0.01)
+        self.assertAlmostEqual(quality_report.time_to(0.01, *self.POINTS), 10)
+        self.assertAlmostEqual(quality_report.error_at(10, *self.POINTS), 0.01)
 
     def test_beyond_the_last_point_nothing_is_made_up(self):
-        times, errors = [1, 100], [0.1, 0.001]
-        self.assertIsNone(quality_report.time_to(0.0001, times, errors))
-        self.assertAlmostEqual(quality_report.error_at(1000, times, errors), 0.001)
-        self.assertIsNone(quality_report.error_at(0.5, times, errors))
-        self.assertEqual(quality_report.time_to(0.5, times, errors), 1)
+        self.assertIsNone(quality_report.time_to(0.0001, *self.POINTS))
+        self.assertAlmostEqual(quality_report.error_at(1000, *self.POINTS), 0.001)
+        self.assertIsNone(quality_report.error_at(0.5, *self.POINTS))
+        self.assertEqual(quality_report.time_to(0.5, *self.POINTS), 1)
 
     def test_a_curve_is_of_one_tool_and_one_cost_by_time(self):
         rows = [row("a", 9, 0.1, 3), row("a", 4, 0.2, 1), row("b", 1, 0.3), row("a", 5, 0.15)]
@@ -68,9 +66,8 @@ class Tables(unittest.TestCase):
 
 class Settings(unittest.TestCase):
     def test_k_grows_as_the_photons_to_the_power_two_thirds(self):
-        self.assertEqual(quality.neighbours(10_000), 12)
-        self.assertEqual(quality.neighbours(640_000), 12 * 16)
-        self.assertEqual(quality.neighbours(100), 12)  # k cannot shrink for ever
+        for photons, k in ((10_000, 12), (640_000, 12 * 16), (100, 12)):  # k cannot shrink for ever
+            self.assertEqual(quality.neighbours(photons), k)
 
     def test_every_tool_has_a_line_in_the_plots(self):
         self.assertEqual(list(quality_report.STYLES), list(quality.TOOLS))
@@ -113,14 +110,10 @@ class Results(unittest.TestCase):
             return {**row(tool, processor, 0.1), "view": view, "setting": setting}
 
         known = [made(kitchen, "photile", "good", 20), made(kitchen, "Mitsuba", "1 spp", 1),
-                 made(classroom, "photile", "good", 15),
-                 made("a view of an older script", "photile", "good", 3)]
-        merged = quality.merged(known, [made(kitchen, "photile", "good", 18),
-                                        made(kitchen, "photile", "draft", 5)])
-        self.assertEqual([(one["view"], one["setting"], one["first"]["processor"])
-                          for one in merged],
-                         [(kitchen, "draft", 5), (kitchen, "good", 18), (kitchen, "1 spp", 1),
-                          (classroom, "good", 15)])
+                 made(classroom, "photile", "good", 15), made("a view of an older script", "photile", "good", 3)]
+        merged = quality.merged(known, [made(kitchen, "photile", "good", 18), made(kitchen, "photile", "draft", 5)])
+        self.assertEqual([(one["view"], one["setting"], one["first"]["processor"]) for one in merged],
+                         [(kitchen, "draft", 5), (kitchen, "good", 18), (kitchen, "1 spp", 1), (classroom, "good", 15)])
 
     def test_a_tool_that_could_not_run_once_is_not_missing_beside_its_figures(self):
         view = quality.VIEWS[0]
@@ -165,8 +158,7 @@ class Measures(unittest.TestCase):
         figures = picture_error.measure(picture, reference)
         floor = 0.01 * (4 / 3) ** 2
         self.assertAlmostEqual(figures["mean_ratio"], (2 + 3 + 1.5) / 4)
-        self.assertAlmostEqual(
-            figures["rel_mse"], (3 / (1 + floor) + 1 / (4 + floor) + 0.25 / (1 + floor)) / 3)
+        self.assertAlmostEqual(figures["rel_mse"], (3 / (1 + floor) + 1 / (4 + floor) + 0.25 / (1 + floor)) / 3)
         self.assertAlmostEqual(figures["lamp_fraction"], 1 / 4)
 
     def test_the_worst_twentieth_of_the_pixels_is_left_out(self):
@@ -180,8 +172,7 @@ class Measures(unittest.TestCase):
     def test_the_mean_square_of_the_relative_error_is_rel_mse_of_a_grey_picture(self):
         reference, picture = grey([1, 2, 3, 4]), grey([2, 1, 3, 5])
         error = picture_error.relative_error(picture, reference)
-        self.assertAlmostEqual((error**2).mean(),
-                               picture_error.measure(picture, reference)["rel_mse"])
+        self.assertAlmostEqual((error**2).mean(), picture_error.measure(picture, reference)["rel_mse"])
         self.assertEqual(list(np.sign(error[0])), [1, -1, 0, 1])
 
     def test_the_exposure_makes_the_mean_mid_grey_and_white_clips(self):

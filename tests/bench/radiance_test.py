@@ -8,9 +8,7 @@ import sys
 import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "bench"))
-
+from records import ROOT
 try:
     import numpy as np
     from rivals import radiance
@@ -38,19 +36,20 @@ def light_flux(text):
 
 
 class Scene(unittest.TestCase):
+    def written(self, name):
+        """Of a bundled scene, Radiance's text, and glTF without what Radiance has not."""
+        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        gltf = write_plain_gltf(ROOT / f"scenes/{name}/{name}.gltf", folder)
+        write_radiance_scene(gltf, folder / "scene.rad")
+        return (folder / "scene.rad").read_text(), json.loads(gltf.read_text())
+
     def test_the_cornell_box_has_its_triangles_and_lumens(self):
-        with tempfile.TemporaryDirectory() as folder:
-            gltf = write_plain_gltf(ROOT / "scenes/cornell-box/cornell-box.gltf", pathlib.Path(folder))
-            write_radiance_scene(gltf, pathlib.Path(folder) / "scene.rad")
-            text = (pathlib.Path(folder) / "scene.rad").read_text()
+        text, _ = self.written("cornell-box")
         self.assertEqual(text.count(" polygon "), 37)  # the lamp is one
         self.assertAlmostEqual(light_flux(text), 1000, delta=1)
 
     def test_the_living_room_loses_textures_metals_and_the_spot_alone(self):
-        with tempfile.TemporaryDirectory() as folder:
-            gltf = write_plain_gltf(ROOT / "scenes/living-room/living-room.gltf", pathlib.Path(folder))
-            write_radiance_scene(gltf, pathlib.Path(folder) / "scene.rad")
-            text, copy = (pathlib.Path(folder) / "scene.rad").read_text(), json.loads(gltf.read_text())
+        text, copy = self.written("living-room")
         self.assertLess(text.count(" polygon "), 62368)
         self.assertAlmostEqual(light_flux(text), 1200 + 1600 + 1050 + 400 + 400 + 470, delta=20)
         self.assertNotIn("Texture", json.dumps(copy["materials"]))

@@ -34,8 +34,9 @@ PLANES = [
 FIGURES = ("Em", "Emin", "Emax", "Uo", "Ud")
 
 
-def fail(text):
-    sys.exit(f"report_test.py: error: {text}")
+def check(condition, text):
+    if not condition:
+        sys.exit(f"report_test.py: error: {text}")
 
 
 def measure(photile, folder):
@@ -59,100 +60,84 @@ def words(element):
 def check_self_contained(page):
     for element in page.iter():
         for name, value in element.attrib.items():
-            if name in ("src", "href", "data") or "url(" in value:
-                fail(f"{element.tag} refers to {value}")
-    if "@import" in words(page) or "url(" in words(page):
-        fail("the style refers to another file")
+            check(name not in ("src", "href", "data") and "url(" not in value, f"{element.tag} refers to {value}")
+    check(not re.search(r"@import|url\(", words(page)), "the style refers to another file")
 
 
 def check_figures(table, grid):
     """Each row against the statistics of the JSON: all lights together, then each."""
     rows = table.findall("tr")[1:]
     expected = [("all lights", grid["statistics"]), *grid["lights"].items()]
-    if [row[0].text for row in rows] != [name for name, _ in expected]:
-        fail(f"rows {[row[0].text for row in rows]}")
+    check([row[0].text for row in rows] == [name for name, _ in expected], f"rows {[row[0].text for row in rows]}")
     for row, (name, statistics) in zip(rows, expected):
         for cell, figure in zip(row[1:], FIGURES):
             shown, truth = float(cell.text), statistics[figure]["value"]
-            if abs(shown - truth) > 0.001 * abs(truth) + 0.0006:
-                fail(f"{name}, {figure}: {shown} for {truth}")
+            check(abs(shown - truth) <= 0.001 * abs(truth) + 0.0006, f"{name}, {figure}: {shown} for {truth}")
             error = float(words(cell[0]).lstrip("± "))
-            if abs(error - statistics[figure]["standard_error"]) > 0.06 * error + 1e-9:
-                fail(f"{name}, {figure}: an error of {error}")
+            check(abs(error - statistics[figure]["standard_error"]) <= 0.06 * error + 1e-9,
+                  f"{name}, {figure}: an error of {error}")
 
 
 def check_drawing(svg, title):
     """The title is there, and every word and bar lies within the drawing."""
     _, _, width, height = map(float, svg.get("viewBox").split())
     texts = svg.findall(f"{SVG}text")
-    if re.sub(r", 1:[0-9.]+$", "", texts[0].text) != title:
-        fail(f"a drawing is called {texts[0].text!r}, not {title!r}")
+    check(re.sub(r", 1:[0-9.]+$", "", texts[0].text) == title, f"the drawing {texts[0].text!r} for {title!r}")
     for text in texts:
         size = float(text.get("font-size", svg.get("font-size")))
         x, y, across = float(text.get("x")), float(text.get("y")), 0.55 * size * len(text.text)
         if "rotate" in text.get("transform", ""):
-            if x - size < 0 or y - across / 2 < 0 or y + across / 2 > height:
-                fail(f"{title}: '{text.text}' is cut off")
-            continue
-        left = x - across * {"middle": 0.5, "end": 1}.get(text.get("text-anchor"), 0)
-        if left < 0 or left + across > width or y - size < 0 or y > height:
-            fail(f"{title}: '{text.text}' is cut off")
+            within = x - size >= 0 and y - across / 2 >= 0 and y + across / 2 <= height
+        else:
+            left = x - across * {"middle": 0.5, "end": 1}.get(text.get("text-anchor"), 0)
+            within = left >= 0 and left + across <= width and y - size >= 0 and y <= height
+        check(within, f"{title}: '{text.text}' is cut off")
     for bar in svg.findall(f"{SVG}rect")[1:]:
-        x, y = float(bar.get("x")), float(bar.get("y"))
-        if x + float(bar.get("width")) > width or y + float(bar.get("height")) > height:
-            fail(f"{title}: a rectangle reaches beyond the border")
-    if title != "Luminaires" and "lux" not in [text.text for text in texts]:
-        fail(f"{title}: the legend has no unit")
+        x, y, across, down = (float(bar.get(name)) for name in ("x", "y", "width", "height"))
+        check(x + across <= width and y + down <= height, f"{title}: a rectangle reaches beyond the border")
+    check(title == "Luminaires" or "lux" in [text.text for text in texts], f"{title}: the legend has no unit")
 
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
         text, record = measure(sys.argv[1], pathlib.Path(folder))
-    if not text.startswith("<!DOCTYPE html>"):
-        fail("no document type")
+    check(text.startswith("<!DOCTYPE html>"), "no document type")
     page = ElementTree.fromstring(text)
     check_self_contained(page)
-    if page.find("head/title").text != "room & <lamps>.obj":
-        fail(f"the title is {page.find('head/title').text!r}")
+    check(page.find("head/title").text == "room & <lamps>.obj", f"the title is {page.find('head/title').text!r}")
     body = page.find("body")
     headings = [words(heading) for heading in body.iter("h2")]
-    if "Key figures" not in headings or "counter(pages)" not in words(page.find("head/style")):
-        fail(f"{headings} have no key figures; or pages have no numbers")
+    check("counter(pages)" in words(page.find("head/style")), "pages have no numbers")
+    check("Key figures" in headings, f"{headings} have no key figures")
     headings = headings[headings.index("Key figures") + 1:]
     grids = record["grids"]
     for heading, grid in zip(headings, grids):
-        if not re.match(re.escape(f"{grid['name']}: {grid['points']} points"), heading):
-            fail(f"{heading!r} is no heading of {grid['name']!r}")
+        check(heading.startswith(f"{grid['name']}: {grid['points']} points"),
+              f"{heading!r} is no heading of {grid['name']!r}")
     tables = list(body.iter("table"))[1:]
-    alone = [f"{grid['name']}: each light alone" for grid in grids if "plane" in grid]
-    if (len(tables) != len(grids) + 3
-            or headings[len(grids):-1] != [*alone, "Luminaires", "List of parts", "Reflectances"]):
-        fail(f"{len(tables)} tables under {len(headings)} headings for {len(grids)} grids")
+    planes = [grid for grid in grids if "plane" in grid]
+    alone = [f"{grid['name']}: each light alone" for grid in planes]
+    check(len(tables) == len(grids) + 3
+          and headings[len(grids):-1] == [*alone, "Luminaires", "List of parts", "Reflectances"],
+          f"{len(tables)} tables under {len(headings)} headings for {len(grids)} grids")
     for table, grid in zip(tables, grids):
         check_figures(table, grid)
-    planes = [grid for grid in grids if "plane" in grid]
     titles = [grid["name"] for grid in planes] + [light for grid in planes for light in grid["lights"]]
     titles.append("Luminaires")
     drawings = list(page.iter(f"{SVG}svg"))
-    if len(drawings) != len(titles):
-        fail(f"{len(drawings)} drawings, not {len(titles)}")
+    check(len(drawings) == len(titles), f"{len(drawings)} drawings, not {len(titles)}")
     for drawing, title in zip(drawings, titles):
         check_drawing(drawing, title)
-    if sum("mm" in drawing.get("width") for drawing in drawings) != len(PLANES) + 1:
-        fail("the plans are at no scale")
-    facts = dict(zip([name.text for name in body.iter("dt")],
-                     [value.text for value in body.iter("dd")]))
-    if facts["illuminance"] != "planar" or facts["seed"] != "1":
-        fail(f"facts: {facts}")
+    check(sum("mm" in drawing.get("width") for drawing in drawings) == len(PLANES) + 1, "the plans are at no scale")
+    facts = {name.text: value.text for name, value in zip(body.iter("dt"), body.iter("dd"))}
+    check(facts["illuminance"] == "planar" and facts["seed"] == "1", f"facts: {facts}")
     lamps, parts, reflectances = ([[cell.text for cell in row] for row in table.findall("tr")[1:]]
                                   for table in tables[len(grids):])
-    if [lamp[:2] for lamp in lamps] != [["A1", "left"], ["B2", "right"]] or lamps[0][3] != "-0.60, 0.99, 0.00":
-        fail(f"lamps: {lamps}")
-    if [part[:3] for part in parts[:2]] != [["A", "1", "left"], ["B", "1", "right"]]:
-        fail(f"parts: {parts}")
+    check([lamp[:2] for lamp in lamps] == [["A1", "left"], ["B2", "right"]] and lamps[0][3] == "-0.60, 0.99, 0.00",
+          f"lamps: {lamps}")
+    check([part[:3] for part in parts[:2]] == [["A", "1", "left"], ["B", "1", "right"]], f"parts: {parts}")
     # The wall's luminance: 0.2126 x 0.7 + 0.7152 x 0.6 + 0.0722 x 0.5.
-    if reflectances[0] != ["wall", "61%"]:
-        fail(f"reflectances: {reflectances}")
+    check(reflectances[0] == ["wall", "61%"], f"reflectances: {reflectances}")
     print(f"{len(grids)} grids, {len(drawings)} drawings")
 
 

@@ -98,6 +98,8 @@ def main():
 
     for name, picture in {"grey": grey, "grey_alpha": grey_alpha, "rgb": rgb, "rgba": rgba}.items():
         by_library(folder, f"{name}.png", picture)
+        by_library(folder, f"{name}.tga", picture)
+        by_library(folder, f"{name}_runs.tga", picture, compression="tga_rle")
     by_library(folder, "palette.png", palette, "RGB")
     by_library(folder, "transparent.png", palette, "RGBA", transparency=3)
     by_library(folder, "bits.png", bits, "L")
@@ -122,17 +124,12 @@ def main():
     by_library(folder, "jpeg.tif", rgb, tolerance=1, compression="jpeg")
     by_library(folder, "inks.tif", rgb.convert("CMYK"), "RGB", tolerance=2)
 
-    by_library(folder, "rgb.bmp", rgb)
-    by_library(folder, "grey.bmp", grey, "RGB")
-    by_library(folder, "palette.bmp", palette, "RGB")
-    by_library(folder, "bits.bmp", bits, "RGB")
+    for name, picture in {"rgb": rgb, "grey": grey, "palette": palette, "bits": bits}.items():
+        by_library(folder, f"{name}.bmp", picture, "RGB")
     by_library(folder, "palette.gif", palette, "RGBA")
     by_library(folder, "transparent.gif", palette, "RGBA", transparency=3)
     by_library(folder, "interlaced.gif", palette, "RGBA", interlace=True)
 
-    for name, picture in {"grey": grey, "grey_alpha": grey_alpha, "rgb": rgb, "rgba": rgba}.items():
-        by_library(folder, f"{name}.tga", picture)
-        by_library(folder, f"{name}_runs.tga", picture, compression="tga_rle")
     by_library(folder, "palette.tga", rgb.quantize(256), "RGB")
     by_library(folder, "from_above.tga", rgba, orientation=1)
 

@@ -23,12 +23,9 @@ def box(width, depth, height):
 @pytest.fixture
 def furnace():
     """A cube of 1 m whose walls shine and reflect 0.5: its radiance is the same everywhere."""
-    return photile.Scene(
-        box(1, 1, 1),
-        materials=[photile.Material("grey", (0.5, 0.5, 0.5))],
-        lights=[photile.Light("walls", 600, "area", triangles=range(12))],
-        cameras=[photile.Camera((0.5, 0.5, 0.5), (0.5, 1, 0.5), (0, 0, 1), 60)],
-    )
+    return photile.Scene(box(1, 1, 1), materials=[photile.Material("grey", (0.5, 0.5, 0.5))],
+                         lights=[photile.Light("walls", 600, "area", triangles=range(12))],
+                         cameras=[photile.Camera((0.5, 0.5, 0.5), (0.5, 1, 0.5), (0, 0, 1), 60)])
 
 
 @pytest.fixture
@@ -37,10 +34,8 @@ def lamps():
     return photile.Scene(
         box(4, 3, 2.5),
         materials=[photile.Material("grey", (0.5, 0.5, 0.5))],
-        lights=[
-            photile.Light("warm", 800, position=(1, 1, 2), color=(1.0, 0.6, 0.3)),
-            photile.Light("cold", 500, position=(3, 2, 2)),
-        ],
+        lights=[photile.Light("warm", 800, position=(1, 1, 2), color=(1.0, 0.6, 0.3)),
+                photile.Light("cold", 500, position=(3, 2, 2))],
         cameras=[photile.Camera((2, 0.2, 1.2), (2, 3, 1), (0, 0, 1), 60)],
     )
 
@@ -48,8 +43,6 @@ def lamps():
 @pytest.fixture
 def plate():
     """A black floor of 10 m x 10 m below a lamp of 1000 lm at 2 m, and its photons' truth."""
-    return photile.Scene(
-        quad([-5, -5, 0], [10, 0, 0], [0, 10, 0]),
-        materials=[photile.Material("black", (0, 0, 0))],
-        lights=[photile.Light("lamp", 1000, position=(0, 0, 2))],
-    )
+    return photile.Scene(quad([-5, -5, 0], [10, 0, 0], [0, 10, 0]),
+                         materials=[photile.Material("black", (0, 0, 0))],
+                         lights=[photile.Light("lamp", 1000, position=(0, 0, 2))])

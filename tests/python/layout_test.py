@@ -48,7 +48,7 @@ def room_of(corners, to_wall=None):
     floor = to_wall(low + cell * (pairs(columns, rows) + 0.5)).reshape(columns, rows).T > 0
     walls = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1) - low
     return Room(np.array([low[0], 0.75, -low[1]]), np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
-                -0.75, 2.25, 30.0, np.array([cell, cell]), floor, walls)
+                -0.75, 2.25, 30.0, np.array([cell, cell]), floor, walls, np.ones((1, 1), bool))
 
 
 def middles(entries):
@@ -90,14 +90,16 @@ def laid_out(folder, options):
                           capture_output=True, text=True)
 
 
-def make_room(folder, corners):
-    """A black room 3 m high as OBJ, and a luminaire beside it."""
-    around = np.arange(1, len(corners) + 1)
-    top, after = around + len(corners), np.roll(around, -1)
-    faces = [around, top[::-1], *np.stack([around, top, np.roll(top, -1), after], axis=1)]
-    (folder / "room.obj").write_text("mtllib room.mtl\nusemtl black\n" + "".join(
-        [f"v {x} {y} {-z}\n" for y in (0, 3) for x, z in corners]
-        + [f"f {' '.join(map(str, face))}\n" for face in faces]))
+def make_room(folder, corners, *cabinets):
+    """A black room 3 m high as OBJ, cabinets 2.3 m high in it, and a luminaire beside it."""
+    lines = ["mtllib room.mtl", "usemtl black"]
+    for outline, height in [(corners, 3), *((cabinet, 2.3) for cabinet in cabinets)]:
+        around = -np.arange(2 * len(outline), len(outline), -1)
+        top, after = around + len(outline), np.roll(around, -1)
+        faces = [around, top[::-1], *np.stack([around, top, np.roll(top, -1), after], axis=1)]
+        lines += [f"v {x} {y} {-z}" for y in (0, height) for x, z in outline]
+        lines += [f"f {' '.join(map(str, face))}" for face in faces]
+    (folder / "room.obj").write_text("\n".join([*lines, ""]))
     (folder / "room.mtl").write_text("newmtl black\nKd 0 0 0\n")
     (folder / "lamp.ies").write_text(IES)
 
@@ -127,11 +129,12 @@ def test_the_smallest_field_that_meets_the_target_is_found(tmp_path):
 
 def test_luminaires_hang_and_aim_as_asked_for(tmp_path):
     pytest.importorskip("contourpy")  # for the plan
-    make_room(tmp_path, L_SHAPE)
+    # Of the five, one is 0.2 m above a cabinet; the other cabinet is beside one.
+    make_room(tmp_path, L_SHAPE, *([(x, 1), (x + 0.8, 1), (x + 0.8, 2), (x, 2)] for x in (6.6, 3.5)))
     run = laid_out(tmp_path, "--field 4x2 --suspension 0.5 --aim 3,0.75,-1.5 --plan plan.svg")
     entries = json.loads((tmp_path / "out.json").read_text())
-    assert run.returncode == 0 and len(entries) == 5 and "<svg" in (tmp_path / "plan.svg").read_text()
-    assert [entry["position"][1] for entry in entries] == pytest.approx([2.5] * 5)
+    assert run.returncode == 0 and "4 x 2 (4 left out)" in run.stdout and "<svg" in (tmp_path / "plan.svg").read_text()
+    assert [entry["position"][1] for entry in entries] == pytest.approx([2.5] * 4)
     assert np.allclose([np.add(entry["position"], entry["aim"]) for entry in entries], [3, 0.75, -1.5], atol=1e-3)
 
 

@@ -127,14 +127,11 @@ def test_photons_of_a_scene_give_the_light_of_a_lamp(plate):
 
 @pytest.mark.parametrize(
     "call, message",
-    [
-        (lambda m: m.nearest([[0, 0, np.nan]], [[0, 0, 1]]), "number"),
-        (lambda m: m.nearest([[0, 0]], [[0, 0, 1]]), "points"),
-        (lambda m: m.nearest([[0, 0, 0]]), "normals"),
-        (lambda m: m.nearest([[0, 0, 0]], [[0, 0, 1]], k=0), "neighbours"),
-        (lambda m: m.nearest([[0, 0, 0]], [[0, 0, 1]], radius=2 * RADIUS), "radius"),
-        (lambda m: m.irradiance([[0, 0, 0]], [[0, 0, 1]], kernel="cube"), "cube"),
-    ],
+    [(lambda m: m.nearest([[0, 0, np.nan]], [[0, 0, 1]]), "number"),
+     (lambda m: m.nearest([[0, 0]], [[0, 0, 1]]), "points"), (lambda m: m.nearest([[0, 0, 0]]), "normals"),
+     (lambda m: m.nearest([[0, 0, 0]], [[0, 0, 1]], k=0), "neighbours"),
+     (lambda m: m.nearest([[0, 0, 0]], [[0, 0, 1]], radius=2 * RADIUS), "radius"),
+     (lambda m: m.irradiance([[0, 0, 0]], [[0, 0, 1]], kernel="cube"), "cube")],
 )
 def test_what_is_wrong_with_a_query(call, message):
     positions, normals, _, _ = cloud(1_000)
@@ -143,10 +140,9 @@ def test_what_is_wrong_with_a_query(call, message):
         call(maps)
 
 
-@pytest.mark.parametrize("wrong", [
-    {"radius": 0}, {"radius": -1.0}, {"photons_per_cell": 0}, {"flux": np.ones((5, 3))},
-    {"lights": [0.5] * 1_000}, {"lights": [-1] * 1_000}, {"device": "no such device"},
-])
+@pytest.mark.parametrize("wrong", [{"radius": 0}, {"radius": -1.0}, {"photons_per_cell": 0},
+                                   {"flux": np.ones((5, 3))}, {"lights": [0.5] * 1_000},
+                                   {"lights": [-1] * 1_000}, {"device": "no such device"}])
 def test_what_is_wrong_with_photons(wrong):
     positions, _, _, _ = cloud(1_000)
     with pytest.raises(photile.Error) as error:

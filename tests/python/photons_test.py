@@ -20,11 +20,8 @@ def test_light_stored_in_a_closed_box_is_a_geometric_series(furnace):
 
 def test_paths_in_a_white_room_are_followed_to_their_end():
     # 1 + 0.99 + 0.99^2 + ... = 100; without what comes after 64 surfaces it were 47.
-    white = photile.Scene(
-        box(1, 1, 1),
-        materials=[photile.Material("white", (0.99, 0.99, 0.99))],
-        lights=[photile.Light("walls", 600, "area", triangles=range(12))],
-    )
+    white = photile.Scene(box(1, 1, 1), materials=[photile.Material("white", (0.99, 0.99, 0.99))],
+                          lights=[photile.Light("walls", 600, "area", triangles=range(12))])
     photons = photile.trace(white, 5_000, seed=3)
     # A hundred surfaces a path, give or take a hundred: 1.4% for 5,000.
     assert (photons.flux @ LUMINANCE).sum() == pytest.approx(100, rel=0.07)

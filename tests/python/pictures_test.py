@@ -133,16 +133,12 @@ def test_cameras_are_chosen(lamps):
 
 @pytest.mark.parametrize(
     "wrong, message",
-    [
-        ({"neighbours": 0}, "neighbours: '0' is not a whole number from 1"),
-        ({"seed": -1}, "seed: '-1' is not"),
-        ({"maps": "octree"}, "maps: 'octree' is not one of"),
-        ({"photons": 5}, "photons: there is no such setting"),
-        ({"quality": "best"}, "quality: 'best'"),
-        ({"integrator": "bdpt"}, "integrator: 'bdpt'"),
-        ({"camera": "cellar"}, "there is no camera 'cellar'; there are camera"),
-        ({"camera": 3}, "there is no camera 3"),
-    ],
+    [({"neighbours": 0}, "neighbours: '0' is not a whole number from 1"),
+     ({"seed": -1}, "seed: '-1' is not"), ({"maps": "octree"}, "maps: 'octree' is not one of"),
+     ({"photons": 5}, "photons: there is no such setting"), ({"quality": "best"}, "quality: 'best'"),
+     ({"integrator": "bdpt"}, "integrator: 'bdpt'"),
+     ({"camera": "cellar"}, "there is no camera 'cellar'; there are camera"),
+     ({"camera": 3}, "there is no camera 3")],
 )
 def test_settings_out_of_their_range(lamps, wrong, message):
     with pytest.raises(photile.UsageError) as error:

@@ -31,27 +31,24 @@ def check(field, make):
 
 
 @pytest.mark.parametrize("name, value", [
-    ("diffuse", "red"), ("diffuse", (1, 2)), ("roughness", None), ("interaction", 5),
-    ("opacity", "x"), ("texture", "no"), ("specular", (1e300, 0, 0)), ("roughness", -1), ("roughness", 1.5),
-    ("texture", float("inf")),
-])
+    ("diffuse", "red"), ("diffuse", (1, 2)), ("roughness", None), ("interaction", 5), ("opacity", "x"),
+    ("texture", "no"), ("specular", (1e300, 0, 0)), ("roughness", -1), ("roughness", 1.5),
+    ("texture", float("inf"))])
 def test_of_a_material(name, value):
     check("material.*m", lambda: scene(materials=[Material(**{"name": "m", name: value})]))
 
 
 @pytest.mark.parametrize("name, value", [
     ("power", "x"), ("power", NAN), ("kind", 3), ("color", (1, 1)), ("position", (0, 0)),
-    ("direction", "down"), ("outer_angle", None), ("group", 4), ("triangles", "abc"),
-])
+    ("direction", "down"), ("outer_angle", None), ("group", 4), ("triangles", "abc")])
 def test_of_a_light(name, value):
     check("light 'l'", lambda: scene(lights=[Light(**{"name": "l", "power": 1, name: value})]))
 
 
 @pytest.mark.parametrize("name, value", [
-    ("position", (0, 0)), ("target", (1,)), ("up", None), ("up", (0, NAN, 0)),
-    ("field_of_view", "x"), ("field_of_view", NAN), ("aspect_ratio", "x"), ("aspect_ratio", NAN),
-    ("position", (10**400, 0, 0)), ("field_of_view", 10**400),
-])
+    ("position", (0, 0)), ("target", (1,)), ("up", None), ("up", (0, NAN, 0)), ("field_of_view", "x"),
+    ("field_of_view", NAN), ("aspect_ratio", "x"), ("aspect_ratio", NAN), ("position", (10**400, 0, 0)),
+    ("field_of_view", 10**400)])
 def test_of_a_camera(name, value):
     camera = Camera(**{"position": (0, 0, 1), "target": (1, 0, 0), name: value})
     check("camera 'camera'", lambda: scene(cameras=[camera]))
@@ -59,10 +56,9 @@ def test_of_a_camera(name, value):
 
 
 @pytest.mark.parametrize("name, value", [
-    ("emissive_scale", NAN), ("emissive_scale", -1), ("emissive_scale", "x"),
-    ("lumen_per_watt", NAN), ("environment_scale", 0), ("environment_rotation", NAN),
-    ("up", 3), ("sun", "a"), ("sky", ("x",)), ("panels", {"x": 1}), ("temperatures", {"x": None}),
-])
+    ("emissive_scale", NAN), ("emissive_scale", -1), ("emissive_scale", "x"), ("lumen_per_watt", NAN),
+    ("environment_scale", 0), ("environment_rotation", NAN), ("up", 3), ("sun", "a"), ("sky", ("x",)),
+    ("panels", {"x": 1}), ("temperatures", {"x": None})])
 def test_of_a_file(tmp_path, name, value):
     file = tmp_path / "room.obj"
     file.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
@@ -71,11 +67,10 @@ def test_of_a_file(tmp_path, name, value):
 
 
 @pytest.mark.parametrize("name, value", [
-    ("photons_emitted", "x"), ("photons_emitted", None), ("photons_emitted", 10**400),
-    ("radius", NAN), ("quality", 3), ("size", "x"), ("size", (10**12, 1)),
-    ("lumen_per_watt", "x"), ("lumen_per_watt", NAN), ("integrator", 4), ("camera", b"x"),
-    ("seed", "\udcff"), ("seed", np.zeros((2, 2))), ("samples_per_pixel", np.array([["a"]])),
-])
+    ("photons_emitted", "x"), ("photons_emitted", None), ("photons_emitted", 10**400), ("radius", NAN),
+    ("quality", 3), ("size", "x"), ("size", (10**12, 1)), ("lumen_per_watt", "x"), ("lumen_per_watt", NAN),
+    ("integrator", 4), ("camera", b"x"), ("seed", "\udcff"), ("seed", np.zeros((2, 2))),
+    ("samples_per_pixel", np.array([["a"]]))])
 def test_of_a_rendering(name, value):
     check(name, lambda: render(**{name: value}))
 
@@ -83,16 +78,14 @@ def test_of_a_rendering(name, value):
 @pytest.mark.parametrize("name, value", [
     ("rays", "x"), ("rays", 1.5), ("repeats", None), ("maintenance", -5), ("maintenance", 0),
     ("maintenance", NAN), ("lumen_per_watt", NAN), ("points", "x"), ("normals", "x"),
-    ("points", [[1, 2], [3]]), ("points", [[0, 10**400, 0]]), ("normals", [[0, 10**400, 0]]),
-])
+    ("points", [[1, 2], [3]]), ("points", [[0, 10**400, 0]]), ("normals", [[0, 10**400, 0]])])
 def test_of_a_measurement(name, value):
     check(name, lambda: measure(**{name: value}))
 
 
 @pytest.mark.parametrize("name, value", [
-    ("corner", "x"), ("corner", (0, NAN, 0)), ("along", (1, 2)), ("across", (0, 10**400, 0)), ("columns", 0),
-    ("columns", NAN), ("rows", None), ("rows", 1.5),
-])
+    ("corner", "x"), ("corner", (0, NAN, 0)), ("along", (1, 2)), ("across", (0, 10**400, 0)),
+    ("columns", 0), ("columns", NAN), ("rows", None), ("rows", 1.5)])
 def test_of_a_grid(name, value):
     room = {"corner": (0, 0, 0), "along": (1, 0, 0), "across": (0, 1, 0), "columns": 2, "rows": 2}
     check(name, lambda: photile.grid(**{**room, name: value}))

@@ -191,11 +191,9 @@ print(os.waitpid(child, 0)[1])
 
 def test_notes_go_to_the_logger(caplog):
     # A scene of mirrors alone stores no photons, and a line says so.
-    scene = photile.Scene(
-        [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]],
-        materials=[photile.Material("mirror", interaction="mirror", specular=(1, 1, 1))],
-        lights=[photile.Light("lamp", 1, position=(0.2, 0.2, 1))],
-    )
+    scene = photile.Scene([[[0, 0, 0], [1, 0, 0], [0, 1, 0]]],
+                          materials=[photile.Material("mirror", interaction="mirror", specular=(1, 1, 1))],
+                          lights=[photile.Light("lamp", 1, position=(0.2, 0.2, 1))])
     with caplog.at_level(logging.INFO, "photile"):
         photile.render(scene, size=(4, 4), quality="draft", photons_emitted=100)
     assert any(record.name == "photile" and record.message for record in caplog.records)

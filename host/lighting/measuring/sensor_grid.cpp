@@ -19,7 +19,6 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
-#include "reading/triangles.hpp"
 
 namespace photile::measuring {
 
@@ -146,7 +145,6 @@ Outline outline_of(const JsonObject& plane, const json& corners) {
   }
   Outline outline;
   for (const auto& [x, y] : points) outline.emplace_back(x, y, 0.0);
-  if (!reading::triangulate_polygon(outline).simple) plane.refuse("'outline' crosses itself");
   return outline;
 }
 
