@@ -21,19 +21,23 @@ from .errors import (
     OutputError,
     UsageError,
 )
-from .measuring import Illuminance, grid, measure
+from .glare_ratings import Glare, glare
+from .grids import Grid, grid, grids
+from .years import Daylight, daylight
+from .measuring import Illuminance, measure
 from .photons import NONE, Neighbours, PhotonMaps, Photons, neighbours, trace
 from .pictures import SETTINGS, LightState, Picture, png_of, relight, render
+from .reports import write_report
 from .scenes import Camera, Light, Material, Scene, load
 
 __version__: str = _photile.version
 
 __all__ = [
-    "NONE", "SETTINGS", "Camera", "DeviceError", "DeviceMemoryError", "Error",
+    "NONE", "SETTINGS", "Camera", "Daylight", "DeviceError", "DeviceMemoryError", "Error", "Glare", "Grid",
     "Illuminance", "InputError", "KernelBuildError", "Light", "LightState", "Material",
     "Neighbours", "OutputError", "PhotonMaps", "Photons", "Picture", "Scene", "UsageError",
-    "devices", "grid", "load", "measure", "neighbours", "png_of", "relight", "render", "test_devices",
-    "trace",
+    "daylight", "devices", "glare", "grid", "grids", "load", "measure", "neighbours", "png_of", "relight", "render",
+    "test_devices", "trace", "write_report",
 ]
 
 

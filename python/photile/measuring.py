@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Union
+from typing import Any, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _photile
-from .errors import InputError, UsageError
-from .scenes import Scene, floats, vector
+from .grids import Grid, cores_of
+from .progress import Progress, heard_by
+from .scenes import Scene
 
-__all__ = ["Illuminance", "grid", "measure"]
+__all__ = ["Illuminance", "measure"]
+
+
+@dataclass(frozen=True)
+class Run:
+    """What grids were measured with, for reports."""
+
+    scene: Scene
+    core: _photile.Measurement
+    options: dict[str, Any]
 
 
 @dataclass(frozen=True, repr=False)
@@ -27,6 +38,10 @@ class Illuminance:
         Lux from all lights together, and its standard error.
     by_light, error_by_light : dicts of (m,) arrays
         The same for each light layer.
+    statistics : dict of (value, standard error)
+        Em, Emin and Emax in lux, Uo = Emin / Em and Ud = Emin / Emax.
+    grid : Grid
+        The grid of the points.
     """
 
     points: NDArray[np.float64]
@@ -35,6 +50,9 @@ class Illuminance:
     error: NDArray[np.float64]
     by_light: dict[str, NDArray[np.float64]]
     error_by_light: dict[str, NDArray[np.float64]]
+    statistics: dict[str, tuple[float, float]]
+    grid: Grid
+    _run: Run
 
     def __len__(self) -> int:
         return len(self.lux)
@@ -48,39 +66,19 @@ class Illuminance:
         columns = {axis: self.points[:, i] for i, axis in enumerate("xyz")}
         return {**columns, "lux": self.lux, "error": self.error, **self.by_light}
 
-
-def grid(
-    corner: ArrayLike, along: ArrayLike, across: ArrayLike, columns: int, rows: int
-) -> NDArray[np.float64]:
-    """The centres of the equal cells of a rectangle.
-
-    Parameters
-    ----------
-    corner : (3,) floats
-        Metres.
-    along, across : (3,) floats
-        The sides of the rectangle, metres.
-    columns, rows : int
-        Cells along the first and the second side.
-
-    Returns
-    -------
-    (rows * columns, 3) array
-        Metres, row by row.
-    """
-    for name, count in (("columns", columns), ("rows", rows)):
-        if not isinstance(count, (int, np.integer)) or count < 1:
-            raise UsageError(f"{name}: {count!r} is not a whole number above 0")
-    u, v = (np.arange(count) + 0.5 for count in (columns, rows))
-    places = np.stack(np.meshgrid(u / columns, v / rows), axis=-1).reshape(-1, 2)
-    sides = np.array([vector(along, "along"), vector(across, "across")])
-    middles: NDArray[np.float64] = vector(corner, "corner") + places @ sides
-    return middles
+    def map(self) -> NDArray[np.float64]:
+        """(rows, columns) lux by cell of a plane, see `Grid.map`."""
+        return self.grid.map(self.lux)
 
 
+@overload
+def measure(scene: Scene, points: Sequence[Grid], **options: Any) -> list[Illuminance]: ...
+@overload
+def measure(scene: Scene, points: Union[Grid, ArrayLike], normals: ArrayLike = ...,
+            **options: Any) -> Illuminance: ...
 def measure(
     scene: Scene,
-    points: ArrayLike,
+    points: Union[Grid, Sequence[Grid], ArrayLike],
     normals: ArrayLike = (0.0, 1.0, 0.0),
     *,
     rays: int = 1024,
@@ -90,18 +88,19 @@ def measure(
     maintenance: float = 1.0,
     lumen_per_watt: float = _photile.lumen_per_watt,
     device: str = "",
-    progress: _photile.Callback = None,
+    progress: Progress = None,
     **settings: Union[int, float, str],
-) -> Illuminance:
+) -> Union[Illuminance, list[Illuminance]]:
     """Illuminance at points in the air or on surfaces, as `photile measure` prints it.
 
     Parameters
     ----------
     scene : Scene
-    points : (m, 3) array
-        Metres in the file's world.
+    points : Grid, sequence of Grid, or (m, 3) array
+        Metres in the file's world. Several grids are measured together and share their photons, as those
+        of the command.
     normals : (m, 3) or (3,) array
-        The directions that the points face, of any length; y is upwards in glTF files.
+        The directions that the points of an array face, of any length; y is upwards in glTF files.
     rays : int
         Rays of each point and repeat.
     repeats : int
@@ -122,7 +121,7 @@ def measure(
 
     Returns
     -------
-    Illuminance
+    Illuminance, or a list of those of several grids
 
     Raises
     ------
@@ -131,38 +130,43 @@ def measure(
     UsageError
         Names the setting and its range.
     """
-    where = floats(points, "points", np.float64)
-    if where.ndim != 2 or where.shape[1] != 3:
-        raise InputError(f"points: the array has shape {where.shape}; it must have shape (m, 3)")
-    if not np.all(np.isfinite(where)):
-        row = int(np.argmin(np.all(np.isfinite(where), axis=1)))
-        raise InputError(f"points: point {row} is NaN or infinite")
-    facing = floats(normals, "normals", np.float64)
-    if facing.shape == (3,):
-        facing = np.broadcast_to(facing, where.shape)
-    facing = np.ascontiguousarray(facing)
-    found = _photile.measure(
-        scene._core,
-        where,
-        facing,
-        {
-            "rays": rays,
-            "repeats": repeats,
-            "cylindrical": cylindrical,
-            "integrator": integrator,
-            "maintenance": maintenance,
-            "lumen_per_watt": lumen_per_watt,
-            "device": device,
-        },
-        dict(settings),
-        progress,
-    )
-    total, lights = found[0], found[1:]
+    options = {
+        "rays": rays,
+        "repeats": repeats,
+        "cylindrical": cylindrical,
+        "integrator": integrator,
+        "maintenance": maintenance,
+        "lumen_per_watt": lumen_per_watt,
+        "device": device,
+        "portals": scene._portals,
+    }
+    grids, several = _grids_of(points, normals)
+    with heard_by(progress) as heard:
+        core = _photile.measure(scene._core, cores_of(grids), options, dict(settings), heard)
+    run = Run(scene, core, {**options, **settings})
+    measured = [_of_grid(run, number, grid) for number, grid in enumerate(grids)]
+    return measured if several else measured[0]
+
+
+def _grids_of(points: Any, normals: ArrayLike) -> tuple[list[Grid], bool]:
+    """The grids, and whether they came as a sequence."""
+    if isinstance(points, Grid):
+        return [points], False
+    if isinstance(points, Sequence) and any(isinstance(one, Grid) for one in points):
+        return list(points), True
+    return [Grid.of_points(points, normals)], False
+
+
+def _of_grid(run: Run, number: int, grid: Grid) -> Illuminance:
+    (_, total, error), *lights = run.core.values(number)
     return Illuminance(
-        where,
-        facing,
-        total[1],
-        total[2],
+        grid.points,
+        grid.normals,
+        total,
+        error,
         {name: lux for name, lux, _ in lights},
         {name: error for name, _, error in lights},
+        run.core.statistics(number),
+        grid,
+        run,
     )

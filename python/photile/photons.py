@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _photile
 from .errors import InputError, UsageError
+from .progress import Progress, heard_by
 from .scenes import Scene, floats
 
 __all__ = ["NONE", "Neighbours", "PhotonMaps", "Photons", "neighbours", "trace"]
@@ -127,7 +128,7 @@ def trace(
     quota: str = "balanced",
     store_direct: bool = True,
     max_path_length: int = 1_000_000,
-    progress: _photile.Callback = None,
+    progress: Progress = None,
 ) -> Photons:
     """Trace photon paths from the lights, and store a photon at each hit on an opaque surface.
 
@@ -144,7 +145,7 @@ def trace(
         Whether photons that come directly from a light are stored.
     max_path_length : int
         The most surface interactions of a path; Russian roulette ends almost all paths much earlier.
-    progress : callable, optional
+    progress : callable or True, optional
         See `render`.
 
     Returns
@@ -165,8 +166,8 @@ def trace(
         "store_direct": store_direct,
         "max_path_length": max_path_length,
     }
-    core = _photile.trace(scene._core, options, progress)
-    return Photons(scene, core)
+    with heard_by(progress) as heard:
+        return Photons(scene, _photile.trace(scene._core, options, heard))
 
 
 class Neighbours(NamedTuple):
@@ -208,7 +209,7 @@ class PhotonMaps:
         Aim for the grids of the maps.
     device : str
         As for `render`; of several devices, the first is used.
-    progress : callable, optional
+    progress : callable or True, optional
         See `render`.
 
     Raises
@@ -233,7 +234,7 @@ class PhotonMaps:
         angle: float = 60.0,
         photons_per_cell: float = 4.0,
         device: str = "",
-        progress: _photile.Callback = None,
+        progress: Progress = None,
     ) -> None:
         if isinstance(photons, Photons):
             positions = photons.position
@@ -247,20 +248,22 @@ class PhotonMaps:
             positions = _rows_from(self._origin, photons, "positions")
         of_photons = None if lights is None else _lights(lights)
         self._has_normals = normals is not None
-        self._core = _photile.PhotonMaps(
-            positions,
-            None if normals is None else _rows(normals, "normals"),
-            None if flux is None else _rows(flux, "flux"),
-            of_photons,
-            {
-                "radius": _radius(radius),
-                "neighbours": neighbours,
-                "angle": angle,
-                "photons_per_cell": photons_per_cell,
-                "device": device,
-            },
-            progress,
-        )
+        options = {
+            "radius": _radius(radius),
+            "neighbours": neighbours,
+            "angle": angle,
+            "photons_per_cell": photons_per_cell,
+            "device": device,
+        }
+        with heard_by(progress) as heard:
+            self._core = _photile.PhotonMaps(
+                positions,
+                None if normals is None else _rows(normals, "normals"),
+                None if flux is None else _rows(flux, "flux"),
+                of_photons,
+                options,
+                heard,
+            )
         if not isinstance(photons, Photons):
             _check_rounding("positions: photon", photons, self._origin, positions, self.radius)
 
@@ -378,7 +381,7 @@ def neighbours(
     max_distance: float = np.inf,
     angle: float = 60.0,
     device: str = "",
-    progress: _photile.Callback = None,
+    progress: Progress = None,
 ) -> tuple[NDArray[np.uint32], NDArray[np.float32]]:
     """The k nearest points of each query, as ``scipy.spatial.cKDTree(points).query(queries, k)``.
 
@@ -403,7 +406,7 @@ def neighbours(
         Degrees, in [0, 180].
     device : str
         As for `render`; of several devices, the first is used.
-    progress : callable, optional
+    progress : callable or True, optional
         See `render`.
 
     Returns
@@ -427,14 +430,15 @@ def neighbours(
     """
     origin = _origin(points)
     rows = _rows_from(origin, points, "points")
-    found = _photile.neighbours(
-        rows,
-        _rows_from(origin, queries, "queries"),
-        None if normals is None else _rows(normals, "normals"),
-        None if query_normals is None else _rows(query_normals, "query_normals"),
-        {"k": k, "max_distance": max_distance, "angle": angle, "device": device},
-        progress,
-    )
+    with heard_by(progress) as heard:
+        found = _photile.neighbours(
+            rows,
+            _rows_from(origin, queries, "queries"),
+            None if normals is None else _rows(normals, "normals"),
+            None if query_normals is None else _rows(query_normals, "query_normals"),
+            {"k": k, "max_distance": max_distance, "angle": angle, "device": device},
+            heard,
+        )
     apart = found[1][np.isfinite(found[1]) & (found[1] > 0)]
     if apart.size:
         _check_rounding("points: point", points, origin, rows, float(2 * np.median(apart)))

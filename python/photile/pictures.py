@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from . import _photile
 from .errors import InputError, UsageError
+from .progress import Progress, heard_by
 from .scenes import Camera, Scene
 
 __all__ = ["Changes", "LightState", "Picture", "SETTINGS", "relight", "render"]
@@ -21,6 +22,7 @@ __all__ = ["Changes", "LightState", "Picture", "SETTINGS", "relight", "render"]
 SETTINGS: tuple[str, ...] = tuple(_photile.setting_names())
 """Names of the settings that `render` and `measure` take; see docs/reference/settings.md."""
 
+_LONGEST_SHOWN = 1024  # pixels: a notebook is hardly wider
 Change = Union[float, str]
 Changes = Optional[Mapping[str, Change]]
 
@@ -164,14 +166,10 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         (height, width, 3) array of uint8
             sRGB.
         """
-        linear = self._core.displayed(
+        return _in_srgb(self._core.displayed(
             self._changes + _listed(changes),
             {"exposure": exposure, "automatic": automatic, "view": view},
-        )
-        curve = np.where(
-            linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055
-        )
-        return (np.clip(curve, 0, 1) * 255 + 0.5).astype(np.uint8)
+        ))
 
     def save(
         self,
@@ -210,11 +208,25 @@ class Picture(Mapping[str, NDArray[np.float32]]):
             raise UsageError(f"{name}: pictures are written as .exr or .png")
 
     def _repr_png_(self) -> bytes:
-        """What Jupyter shows."""
-        return png_of(self.display())
+        """What Jupyter shows: `display`, with means of blocks of pixels where a side is longer than
+        1024 pixels."""
+        linear = self._core.displayed(
+            self._changes, {"exposure": 0.0, "automatic": True, "view": "neutral"})
+        block = -(-max(self.width, self.height) // _LONGEST_SHOWN)
+        high, wide = min(block, self.height), min(block, self.width)
+        rows, columns = self.height // high, self.width // wide
+        blocks = linear[:rows * high, :columns * wide].reshape(rows, high, columns, wide, 3)
+        return png_of(_in_srgb(blocks.mean(axis=(1, 3))))
 
     def __repr__(self) -> str:
         return f"<photile.Picture: {self.width} x {self.height}, {len(self)} light layers>"
+
+
+def _in_srgb(linear: NDArray[np.float32]) -> NDArray[np.uint8]:
+    curve = np.where(
+        linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055
+    )
+    return (np.clip(curve, 0, 1) * 255 + 0.5).astype(np.uint8)
 
 
 def png_of(pixels: NDArray[np.uint8]) -> bytes:
@@ -253,7 +265,7 @@ def render(
     integrator: str = "photon-map",
     lumen_per_watt: float = _photile.lumen_per_watt,
     device: str = "",
-    progress: _photile.Callback = None,
+    progress: Progress = None,
     **settings: Union[int, float, str],
 ) -> Picture:
     """Render a picture with a layer for each light.
@@ -274,10 +286,10 @@ def render(
     device : str
         An OpenCL device, or several, as `photile devices` lists them: "" is the best; else
         "0:0", "cpu", "gpu", a part of a name, or "all".
-    progress : callable, optional
+    progress : callable or True, optional
         ``progress(stage, done, total, unit)`` is called a few times a second in the calling thread.
-        An exception from it stops the work and is raised here once it has stopped. Notes to the user
-        go to the logger "photile".
+        An exception from it stops the work and is raised here once it has stopped. True writes a line
+        to standard error. Notes to the user go to the logger "photile".
     **settings
         Settings by their names in ``photile.SETTINGS``: ``photons_emitted=100_000``, ``neighbours=80``,
         ``seed=7``, ``maps="naive"``.
@@ -295,19 +307,15 @@ def render(
     KeyboardInterrupt
         Ctrl-C was pressed.
     """
-    core = _photile.render(
-        scene._core,
-        scene._camera(camera),
-        {
-            "size": size,
-            "integrator": integrator,
-            "lumen_per_watt": lumen_per_watt,
-            "device": device,
-        },
-        {"quality": quality, **settings},
-        progress,
-    )
-    return Picture(core)
+    options = {
+        "size": size,
+        "integrator": integrator,
+        "lumen_per_watt": lumen_per_watt,
+        "device": device,
+    }
+    with heard_by(progress) as heard:
+        return Picture(_photile.render(scene._core, scene._camera(camera), options,
+                                       {"quality": quality, **settings}, heard))
 
 
 def relight(file: Union[str, os.PathLike[str]], changes: Changes = None) -> Picture:

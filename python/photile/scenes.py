@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import datetime
+import json
 import os
 import reprlib
 from collections.abc import Mapping, Sequence
@@ -13,10 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _photile
 from .errors import InputError, UsageError
+from .progress import Progress, heard_by
 
 __all__ = ["Camera", "Light", "Material", "Scene", "load"]
 
 Vector = tuple[float, float, float]
+File = Union[str, os.PathLike[str]]
+Luminaire = Mapping[str, Any]
 _Part = TypeVar("_Part")
 
 
@@ -150,7 +155,7 @@ class Camera:
             position,
             vector(forward, "target"),
             up,
-            float(np.radians(_number(self.field_of_view, f"camera '{self.name}': field_of_view"))),
+            float(np.radians(number(self.field_of_view, f"camera '{self.name}': field_of_view"))),
             self.aspect_ratio,
         )
 
@@ -163,7 +168,7 @@ def floats(values: ArrayLike, name: str, kind: Any = np.float32) -> NDArray[Any]
         raise InputError(f"{name}: {reprlib.repr(values)} is not an array of numbers") from None
 
 
-def _number(value: Any, name: str) -> float:
+def number(value: Any, name: str) -> float:
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError):
@@ -233,7 +238,9 @@ class Scene:
     triangle_materials : (n,) array of ints, optional
         The material of each triangle; by default all have the first.
     lights : sequence of Light
-        At least one.
+        At least one, unless there are luminaires.
+    luminaires : sequence of mappings
+        Luminaires to place, see `load`; here y points up, too.
     cameras : sequence of Camera
         A camera that shows the whole scene if none is given.
     unit : {"lumen", "watt"}
@@ -253,6 +260,12 @@ class Scene:
     """
 
     _core: _photile.Scene
+    _north: float = 0.0
+    """Degrees clockwise from -z."""
+    _portals: Sequence[str] = ()
+    """What the caller of `load` asked for."""
+    _sky: tuple[Optional[float], Sequence[tuple[str, str]]] = (None, ())
+    """The reflectance of the ground under the sky that was asked for, and what else results state of it."""
 
     def __init__(
         self,
@@ -264,6 +277,7 @@ class Scene:
         materials: Sequence[Material] = (),
         triangle_materials: Optional[ArrayLike] = None,
         lights: Sequence[Light] = (),
+        luminaires: Sequence[Luminaire] = (),
         cameras: Sequence[Camera] = (),
         unit: str = "lumen",
         name: str = "scene in memory",
@@ -310,6 +324,7 @@ class Scene:
             [_fields(material) for material in materials],
             [_fields(light) for light in lights],
             [_part(camera, Camera, "cameras")._parts() for camera in cameras],
+            _luminaire_text(luminaires),
         )
 
     @classmethod
@@ -429,7 +444,7 @@ def _fields(part: Union[Material, Light]) -> dict[str, Any]:
     return dict(part.__dict__)
 
 
-def _text(values: Any, *separators: str) -> str:
+def joined(values: Any, *separators: str) -> str:
     """The values in the form of the command line, whose parsers refuse what does not fit."""
     parts = [str(value) for value in values] if isinstance(values, (tuple, list)) else [str(values)]
     between = iter(separators)
@@ -440,8 +455,30 @@ def _text(values: Any, *separators: str) -> str:
     return text
 
 
+def _luminaire_text(luminaires: Sequence[Luminaire]) -> str:
+    """The list as a file would have it, "" for none. Photometric files are relative to the current folder."""
+    entries = []
+    for number, luminaire in enumerate(luminaires, 1):
+        if not isinstance(luminaire, Mapping):
+            raise UsageError(f"luminaires: luminaire {number}: {reprlib.repr(luminaire)} is not a mapping; "
+                             "give one, such as {'file': 'panel.ies', 'position': 'ceiling'}")
+        entry = dict(luminaire)
+        if isinstance(entry.get("file"), (str, os.PathLike)):
+            entry["file"] = os.path.abspath(entry["file"])
+        entries.append(entry)
+    try:
+        return json.dumps(entries, allow_nan=False, default=lambda value: value.tolist()) if entries else ""
+    except (TypeError, ValueError, AttributeError, RecursionError):
+        raise UsageError("luminaires: a value is NaN, infinite, or neither text nor numbers") from None
+
+
+def shares(of: Optional[Mapping[str, float]]) -> list[str]:
+    """Fractions of materials in the form of the command line."""
+    return [f"{material}={share}" for material, share in (of or {}).items()]
+
+
 def load(
-    file: Union[str, os.PathLike[str]],
+    file: File,
     *,
     scene: str = "",
     up: str = "",
@@ -449,17 +486,26 @@ def load(
     emissive_scale: float = 1.0,
     allow_outside: bool = False,
     light_groups: Optional[Mapping[str, str]] = None,
-    profiles: Optional[Mapping[str, Union[str, os.PathLike[str]]]] = None,
+    profiles: Optional[Mapping[str, File]] = None,
     temperatures: Optional[Mapping[str, float]] = None,
     panels: Optional[Mapping[str, tuple[float, float, float]]] = None,
-    environment: Union[None, str, os.PathLike[str]] = None,
+    luminaires: Union[None, File, Sequence[Luminaire]] = None,
+    environment: Optional[File] = None,
     environment_scale: float = 1.0,
     environment_rotation: float = 0.0,
-    sun: Optional[tuple[float, float, float]] = None,
-    sky: Optional[tuple[str, float]] = None,
+    sun: Union[None, float, tuple[float, ...]] = None,
+    sky: Union[None, tuple[str, float], tuple[str, float, float]] = None,
+    site: Optional[tuple[float, float, float]] = None,
+    time: Union[None, str, datetime.datetime] = None,
+    weather: Optional[File] = None,
+    north: float = 0.0,
     ground: float = 0.2,
+    reflectance: Optional[Mapping[str, float]] = None,
+    glass: Optional[Mapping[str, float]] = None,
+    hide: Sequence[str] = (),
+    portals: Sequence[str] = (),
     lumen_per_watt: float = _photile.lumen_per_watt,
-    progress: _photile.Callback = None,
+    progress: Progress = None,
 ) -> Scene:
     """Read a scene from OBJ and MTL (.obj) or glTF 2.0 (.gltf, .glb).
 
@@ -485,19 +531,39 @@ def load(
         Colours of lights.
     panels : mapping of node names to (width, height, lumens)
         Luminous rectangles at nodes of a glTF file, metres; they emit along -z.
+    luminaires : path or sequence of mappings, optional
+        A file as of ``photile --luminaires``, or its entries, whose photometric files are then relative
+        to the current folder: ``[{"file": "panel.ies", "position": "ceiling", "count": [2, 3],
+        "spacing": [1.8, 2.4]}]``.
     environment : path, optional
         A picture of the surroundings, equirectangular.
     environment_scale, environment_rotation : float
         Factor of its texels, and degrees clockwise as seen from above.
-    sun : (azimuth, elevation, lux), optional
-        Degrees clockwise from north (-z) and above the horizon; lux on a surface that faces it.
-    sky : (kind, lux), optional
-        "uniform", "overcast" or "clear"; lux on a horizontal surface.
+    sun : (azimuth, elevation, lux) or (azimuth, elevation, lux, diameter) or lux, optional
+        Degrees clockwise from north and above the horizon; lux on a surface that faces it; degrees. Its
+        lux alone where `site` and `time` place it.
+    sky : (kind, lux) or ("perez", direct, diffuse) or ("patches", count), optional
+        "uniform", "overcast" or "clear"; lux on a horizontal surface. W/m2 facing the sun and on a
+        horizontal surface. 145, 577 or 2305 lights.
+    site : (latitude, longitude, time zone), optional
+        Degrees north and east, hours ahead of UTC; by default that of `weather`.
+    time : datetime or "YYYY-MM-DDTHH:MM", optional
+        Standard time of the site. With `weather` the sky is that of the hour.
+    weather : path, optional
+        An EnergyPlus weather file (.epw).
+    north : float
+        Degrees clockwise from -z as seen from above.
     ground : float
         Reflectance of even ground below the horizon, which the sun and the sky light; 0 is black.
+    reflectance, glass : mappings of patterns of material names to fractions, optional
+        Reflectances; transmittances of what becomes clear glass.
+    hide : sequence of patterns
+        Nodes, meshes, objects and groups that are left out.
+    portals : sequence of patterns
+        Materials of windows; none searches for windows, "off" has none.
     lumen_per_watt : float
         The factor between lumens or lux and the watts of an OBJ scene.
-    progress : callable, optional
+    progress : callable or True, optional
         See `render`; here it only serves to notice Ctrl-C.
 
     Returns
@@ -511,6 +577,7 @@ def load(
     UsageError
         The file has no such scene or light.
     """
+    windows = [portals] if isinstance(portals, str) else list(portals)
     options = {
         "scene": scene,
         "up": up,
@@ -520,13 +587,30 @@ def load(
         "light_groups": [f"{glob}={group}" for glob, group in (light_groups or {}).items()],
         "profiles": [f"{light}={of}" for light, of in (profiles or {}).items()],
         "temperatures": [f"{light}={kelvin}" for light, kelvin in (temperatures or {}).items()],
-        "panels": [f"{node}={_text(size, 'x', ',')}" for node, size in (panels or {}).items()],
+        "panels": [f"{node}={joined(size, 'x', ',')}" for node, size in (panels or {}).items()],
         "environment": os.fspath(environment) if environment is not None else "",
         "environment_scale": environment_scale,
         "environment_rotation": environment_rotation,
-        "sun": _text(sun, ",") if sun is not None else "",
-        "sky": _text(sky, "=") if sky is not None else "",
+        "sun": joined(sun, ",") if sun is not None else "",
+        "sky": joined(sky, "=", ",") if sky is not None else "",
+        "site": joined(site, ",") if site is not None else "",
+        "time": f"{time:%Y-%m-%dT%H:%M}" if isinstance(time, datetime.datetime) else time or "",
+        "weather": os.fspath(weather) if weather is not None else "",
+        "north": north,
         "ground": ground,
+        "reflectance": shares(reflectance),
+        "glass": shares(glass),
+        "hide": [hide] if isinstance(hide, str) else list(hide),
+        "portals": windows,
+        "luminaires": "",
+        "luminaires_text": "",
         "lumen_per_watt": lumen_per_watt,
     }
-    return Scene._of(_photile.load(os.fspath(file), options, progress))
+    if isinstance(luminaires, (str, os.PathLike)):
+        options["luminaires"] = os.fspath(luminaires)
+    else:
+        options["luminaires_text"] = _luminaire_text(luminaires or ())
+    with heard_by(progress) as heard:
+        loaded = Scene._of(_photile.load(os.fspath(file), options, heard))
+    loaded._north, loaded._portals, loaded._sky = float(north), windows, _photile.sky_of(options)
+    return loaded

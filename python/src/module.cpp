@@ -48,11 +48,15 @@ PYBIND11_MODULE(_photile, module) {
   module.attr("version") = PHOTILE_VERSION;
   module.attr("none") = 0xFFFF'FFFFu;
   module.attr("lumen_per_watt") = photile::defaults::lumen_per_watt;
+  module.attr("wall_band") = photile::defaults::wall_band;
   photile::python::define_array_memory(module);
   photile::python::define_work(module);
   photile::python::define_devices(module);
   photile::python::define_scenes(module);
   photile::python::define_photons(module);
   photile::python::define_pictures(module);
+  photile::python::define_grids(module);
   photile::python::define_measuring(module);
+  photile::python::define_glare(module);
+  photile::python::define_daylight(module);
 }

@@ -24,7 +24,12 @@ void define_devices(pybind11::module_& module);
 void define_scenes(pybind11::module_& module);
 void define_photons(pybind11::module_& module);
 void define_pictures(pybind11::module_& module);
+void define_grids(pybind11::module_& module);
 void define_measuring(pybind11::module_& module);
+void define_glare(pybind11::module_& module);
+void define_daylight(pybind11::module_& module);
+
+using SharedScene = std::shared_ptr<Scene>;
 
 /// Devices stay open while the process lives, with their kernels. One thread works with them at a
 /// time.
@@ -76,9 +81,25 @@ Enum named(const std::array<Enum, count>& all, const std::string& name, const st
 /// The devices that a selector means, opened when they are first asked for. Errors: DeviceError.
 std::shared_ptr<OpenDevices> devices_of(const std::string& selector);
 
+/// Does work with the devices of a selector, or with none where it follows paths.
+template <class Work>
+auto with_devices(bool by_paths, const std::string& selector, const Work& work) {
+  if (by_paths) return work(std::span<Device>());
+  const auto open = devices_of(selector);
+  const std::lock_guard lock(open->mutex);
+  return work(std::span<Device>(open->devices));
+}
+
 /// A tuple (name, position, forward, up, vertical field of view in radians), in the file's world,
 /// as a camera of the scene.
 Camera camera_of(const Scene& scene, const pybind11::tuple& parts);
+
+/// Whether the option "integrator" is "path", and not "photon-map". Errors: UsageError for another
+/// word.
+bool is_by_paths(const pybind11::dict& options);
+
+/// A number of the scene's cameras, or a tuple as camera_of takes it.
+Camera chosen_camera(const Scene& scene, const pybind11::object& camera);
 
 /// Settings by name, from a dictionary of numbers and strings; "quality" is set first. Errors:
 /// UsageError that names the setting.

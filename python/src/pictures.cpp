@@ -76,25 +76,15 @@ RenderParameters parameters_of(const Camera& camera, const std::optional<std::pa
   return parameters;
 }
 
-/// A number of the scene's cameras, or a tuple as camera_of takes it.
-Camera chosen_camera(const Scene& scene, const py::object& camera) {
-  if (py::isinstance<py::tuple>(camera)) return camera_of(scene, camera.cast<py::tuple>());
-  return scene.cameras.at(camera.cast<std::size_t>());
-}
-
 std::shared_ptr<Picture> render_picture(const std::shared_ptr<Scene>& scene, const py::object& view,
                                         const py::dict& options, const py::dict& settings,
                                         const py::object& progress) {
   const Camera camera = chosen_camera(*scene, view);
   const RenderParameters parameters =
       parameters_of(camera, field<std::optional<std::pair<int, int>>>(options, "size"), settings);
-  const auto integrator = field<std::string>(options, "integrator");
   const auto device = field<std::string>(options, "device");
   const auto lumen_per_watt = field<double>(options, "lumen_per_watt");
-  const bool by_paths = integrator == "path";
-  if (!by_paths && integrator != "photon-map") {
-    throw UsageError("integrator: '" + integrator + "' is not one of photon-map, path");
-  }
+  const bool by_paths = is_by_paths(options);
   return run(progress, [&](Progress& told) {
     auto picture = std::make_shared<Picture>();
     picture->own = LightMix::of(*scene, lumen_per_watt);
@@ -231,6 +221,17 @@ py::list statistics_of(const Picture& picture) {
 }
 
 }  // namespace
+
+bool is_by_paths(const py::dict& options) {
+  const auto integrator = field<std::string>(options, "integrator");
+  if (integrator == "path" || integrator == "photon-map") return integrator == "path";
+  throw UsageError("integrator: '" + integrator + "' is not one of photon-map, path");
+}
+
+Camera chosen_camera(const Scene& scene, const py::object& camera) {
+  if (py::isinstance<py::tuple>(camera)) return camera_of(scene, camera.cast<py::tuple>());
+  return scene.cameras.at(camera.cast<std::size_t>());
+}
 
 void set_all(RenderParameters& parameters, const py::dict& settings) {
   if (settings.contains("quality")) {

@@ -9,17 +9,20 @@
 
 #include "arrays.hpp"
 #include "loading/load_scene.hpp"
+#include "loading/luminaires.hpp"
+#include "loading/surroundings.hpp"
 #include "parts.hpp"
+#include "photile/defaults.hpp"
 #include "photile/light_layers.hpp"
 #include "photile/scene.hpp"
 #include "photile/scene_builder.hpp"
 #include "reading/triangles.hpp"
+#include "scene/light_names.hpp"
 #include "work.hpp"
 
 namespace photile::python {
 namespace {
 
-using SharedScene = std::shared_ptr<Scene>;
 using Vector3 = std::array<double, 3>;
 
 glm::dvec3 vec(const Vector3& v) { return {v[0], v[1], v[2]}; }
@@ -124,13 +127,25 @@ std::uint32_t add_light(SceneBuilder& builder, const py::dict& fields, const glm
   return builder.add(std::move(light));
 }
 
+/// The name of a list that is in no file, whose photometric files have absolute names.
+constexpr const char* listed_luminaires = "/luminaires";
+
+/// Adds a list of luminaires to a finished scene.
+void add_listed(const std::string& text, Scene& scene) {
+  if (text.empty()) return;
+  files::Warnings warnings;
+  loading::add_luminaires(loading::LuminaireList::parse(text, listed_luminaires), listed_luminaires,
+                          /*allow_outside=*/false, defaults::lumen_per_watt, scene, warnings);
+  scene::make_light_names_unique(scene.lights);
+  for (const std::string& line : warnings.lines()) scene.report.warnings.push_back(line);
+}
+
 py::tuple tuple_of(const Camera& camera) {
   return py::make_tuple(camera.name, triple(camera.position), triple(camera.forward),
                         triple(camera.up), camera.vertical_field_of_view, camera.aspect_ratio);
 }
 
-SharedScene load(const std::filesystem::path& file, const py::dict& options,
-                 const py::object& progress) {
+SceneLoadOptions load_options(const py::dict& options) {
   SceneLoadOptions load;
   load.emissive_scale = field<float>(options, "emissive_scale");
   load.allow_outside = field<bool>(options, "allow_outside");
@@ -156,9 +171,37 @@ SharedScene load(const std::filesystem::path& file, const py::dict& options,
   if (const auto text = field<std::string>(options, "sky"); !text.empty())
     load.sky = Sky::parse(text);
   load.ground = field<double>(options, "ground");
+  SkySituation& situation = load.situation;
+  if (const auto text = field<std::string>(options, "site"); !text.empty())
+    situation.site = Site::parse(text);
+  if (const auto text = field<std::string>(options, "time"); !text.empty())
+    situation.time = LocalTime::parse(text);
+  situation.weather = field<std::string>(options, "weather");
+  situation.north_degrees = field<double>(options, "north");
+  for (const auto& text : texts("reflectance"))
+    load.reflectances.push_back(MaterialShare::parse(text));
+  for (const auto& text : texts("glass")) load.glasses.push_back(MaterialShare::parse(text));
+  load.hidden = texts("hide");
+  load.portals = texts("portals");
+  load.luminaires = field<std::string>(options, "luminaires");
+  load.luminaires_text = field<std::string>(options, "luminaires_text");
+  if (!load.luminaires_text.empty()) load.luminaires = listed_luminaires;
+  return load;
+}
+
+SharedScene load(const std::filesystem::path& file, const py::dict& options,
+                 const py::object& progress) {
+  const SceneLoadOptions load = load_options(options);
   return run(progress, [&](Progress& told) {
     return std::make_shared<Scene>(loading::load_scene(file, load, told));
   });
+}
+
+/// What results state of the sky that these options make: the reflectance of the ground, None
+/// without a sky, and names and values.
+py::tuple sky_of(const py::dict& options) {
+  const SceneLoadOptions load = load_options(options);
+  return py::make_tuple(loading::ground_reflectance(load), loading::sky_facts(load));
 }
 
 /// Where the scene's coordinates count from, as those of files do.
@@ -177,7 +220,8 @@ struct Arrays {
 };
 
 SharedScene build(const std::string& name, const std::string& unit, const Arrays& arrays,
-                  const py::list& materials, const py::list& lights, const py::list& cameras) {
+                  const py::list& materials, const py::list& lights, const py::list& cameras,
+                  const std::string& luminaires) {
   constexpr std::array units{"lumen", "watt"};
   SceneBuilder builder(name, word<PowerUnit>(units, unit, "unit"));
   for (const py::handle& fields : materials) {
@@ -206,6 +250,7 @@ SharedScene build(const std::string& name, const std::string& unit, const Arrays
   builder.add(mesh);
   auto scene = std::make_shared<Scene>(std::move(builder).build());
   scene->origin = around.origin;
+  add_listed(luminaires, *scene);
   return scene;
 }
 
@@ -337,15 +382,17 @@ void define_scenes(py::module_& module) {
         return list;
       });
   module.def("load", &load);
+  module.def("sky_of", &sky_of);
   module.def(
       "build", [](const py::object& name, const py::object& unit, Array<double> vertices,
                   Array<std::uint32_t> triangles, Array<float> normals, Array<float> uv,
                   Array<std::uint32_t> triangle_materials, Array<std::uint32_t> triangle_lights,
-                  const py::list& materials, const py::list& lights, const py::list& cameras) {
+                  const py::list& materials, const py::list& lights, const py::list& cameras,
+                  const py::object& luminaires) {
         return build(value_of<std::string>(name, "name"), value_of<std::string>(unit, "unit"),
                      {std::move(vertices), std::move(normals), std::move(uv), std::move(triangles),
                       std::move(triangle_materials), std::move(triangle_lights)},
-                     materials, lights, cameras);
+                     materials, lights, cameras, value_of<std::string>(luminaires, "luminaires"));
       });
 }
 

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "box_scene.hpp"
-#include "command/daylight_results.hpp"
+#include "command/daylight_options.hpp"
 #include "report/daylight_tables.hpp"
 
 namespace photile::test {

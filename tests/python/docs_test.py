@@ -26,8 +26,8 @@ def test_everything_public_is_documented(name):
             assert inspect.getdoc(value), f"{name}.{member}"
 
 
-@pytest.mark.parametrize("name", ["load", "trace", "render", "relight", "measure", "neighbours", "PhotonMaps",
-                                  "Scene"])
+@pytest.mark.parametrize("name", ["load", "trace", "render", "relight", "measure", "grids", "glare", "daylight",
+                                  "write_report", "neighbours", "PhotonMaps", "Scene"])
 def test_every_parameter_is_in_the_docstring(name):
     thing = getattr(photile, name)
     text = inspect.getdoc(thing)

@@ -12,34 +12,21 @@ from photile.report import command
 COMMAND = os.environ["PHOTILE_COMMAND"]
 
 
-def line_of_the_command(*arguments):
-    run = subprocess.run([COMMAND, *map(str, arguments)], stderr=subprocess.PIPE, text=True)
-    lines = run.stderr.strip().splitlines()
-    return lines[-1].split("error: ", 1)[1]
+@pytest.fixture
+def picture(lamps):
+    return photile.render(lamps, size=(2, 2), quality="draft", photons_emitted=100)
 
 
-def test_the_line_of_a_missing_scene(tmp_path):
-    file = tmp_path / "missing.obj"
+@pytest.mark.parametrize("name, read, subcommand", [("missing.obj", photile.load, "info"),
+                                                    ("damaged.gltf", photile.load, "info"),
+                                                    ("without_layers.png", photile.relight, "relight")])
+def test_the_line_is_that_of_the_command(tmp_path, picture, name, read, subcommand):
+    picture.save(tmp_path / "without_layers.png")
+    (tmp_path / "damaged.gltf").write_text("{")
     with pytest.raises(photile.InputError) as error:
-        photile.load(file)
-    assert str(error.value) == line_of_the_command("info", file)
-
-
-def test_the_line_of_a_damaged_scene(tmp_path):
-    file = tmp_path / "damaged.gltf"
-    file.write_text("{")
-    with pytest.raises(photile.InputError) as error:
-        photile.load(file)
-    assert str(error.value) == line_of_the_command("info", file)
-
-
-def test_the_line_of_a_picture_without_layers(tmp_path):
-    file = tmp_path / "a.png"
-    scene = photile.Scene([[[0, 0, 0], [1, 0, 0], [0, 1, 0]]], lights=[photile.Light("lamp", 1, position=(0.2, 0.2, 1))])
-    photile.render(scene, size=(2, 2), quality="draft", photons_emitted=100).save(file)
-    with pytest.raises(photile.InputError) as error:
-        photile.relight(file)
-    assert str(error.value) == line_of_the_command("relight", file)
+        read(tmp_path / name)
+    run = subprocess.run([COMMAND, subcommand, tmp_path / name], stderr=subprocess.PIPE, text=True)
+    assert str(error.value) == run.stderr.strip().splitlines()[-1].split("error: ", 1)[1]
 
 
 def test_each_is_an_error_of_python_too():
@@ -49,9 +36,7 @@ def test_each_is_an_error_of_python_too():
     assert issubclass(photile.KernelBuildError, photile.DeviceError)
 
 
-def test_a_folder_that_is_not_there(tmp_path):
-    scene = photile.Scene([[[0, 0, 0], [1, 0, 0], [0, 1, 0]]], lights=[photile.Light("lamp", 1, position=(0.2, 0.2, 1))])
-    picture = photile.render(scene, size=(2, 2), quality="draft", photons_emitted=100)
+def test_a_folder_that_is_not_there(tmp_path, picture):
     with pytest.raises(photile.OutputError, match="nowhere"):
         picture.save(tmp_path / "nowhere" / "a.exr")
 

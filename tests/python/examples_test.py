@@ -47,8 +47,10 @@ def test_relight_sliders(tmp_path):
 
 def test_lux_table(tmp_path):
     pandas = pytest.importorskip("pandas")
+    pytest.importorskip("contourpy")
     run("lux_table.py", SCENES / "living-room" / "living-room.gltf", tmp_path)
     table = pandas.read_csv(tmp_path / "lux.csv")
-    assert len(table) == 24
+    assert 24 < len(table) <= 48  # 8 x 6 points, 0.62 m apart, but for those in furniture
+    assert "Living room" in (tmp_path / "lux.html").read_text()
     lamps = table.drop(columns=["x", "y", "z", "lux", "error"])
     assert lamps.sum(axis=1).to_numpy() == pytest.approx(table["lux"].to_numpy(), rel=1e-4)

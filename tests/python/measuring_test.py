@@ -46,15 +46,3 @@ def test_maintenance_scales_everything(plate):
         for factor in (1.0, 0.8)
     )
     assert other.lux == pytest.approx(0.8 * one.lux, rel=1e-5)
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [{"points": [0, 0, 0]}, {"points": [[0, 0, np.inf]]}, {"normals": [[0, 0, 0]]},
-     {"normals": [[0, 0, 1], [0, 0, 1]]}, {"repeats": 1}, {"rays": 0}, {"integrator": "guess"}],
-)
-def test_what_is_wrong(plate, wrong):
-    fields = {"points": [[0, 0, 0.5]], "normals": (0, 0, 1), "photons_emitted": 1_000, **wrong}
-    with pytest.raises(photile.Error) as error:
-        photile.measure(plate, **fields)
-    assert "\n" not in str(error.value)

@@ -79,12 +79,6 @@ def test_photons_that_come_straight_may_be_left_out(plate):
     assert len(photile.trace(plate, 1_000, store_direct=False)) == 0
 
 
-@pytest.mark.parametrize("wrong", [{"photons": 0}, {"photons": -1}, {"quota": "fair"}])
-def test_numbers_out_of_their_range(lamps, wrong):
-    with pytest.raises(photile.UsageError):
-        photile.trace(lamps, **wrong)
-
-
 def test_a_scene_outlives_its_name():
     photons = photile.trace(photile.Scene(box(1, 1, 1), lights=[photile.Light("a", 1)]), 100)
     assert len(photons.normal) == len(photons)

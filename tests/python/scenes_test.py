@@ -44,9 +44,11 @@ def test_what_was_given_is_what_there_is():
         triangles,
         materials=[photile.Material("red", (0.5, 0.1, 0.1)), glass],
         triangle_materials=[0, 1, 0, 0],
-        lights=[photile.Light("spot", 50, "spot", position=(1, 2, 3), outer_angle=30, group="all"),
-                photile.Light("panel", 100, "area", triangles=[2, 3], group="all"),
-                photile.Light("sun", kind="directional", illuminance=1000, direction=(0, 0, -1))],
+        lights=[
+            photile.Light("spot", 50, "spot", position=(1, 2, 3), outer_angle=30, group="all"),
+            photile.Light("panel", 100, "area", triangles=[2, 3], group="all"),
+            photile.Light("sun", kind="directional", illuminance=1000, direction=(0, 0, -1)),
+        ],
         cameras=[photile.Camera((0, 0, 5), (0, 0, 0), (0, 1, 0), 35, "top", 1.5)],
     )
     assert scene.triangle_material.tolist() == [0, 1, 0, 0]
@@ -96,10 +98,12 @@ def test_a_texture_is_what_photons_see():
     # Half of the floor is black: photons of the lamp above it are absorbed there.
     texels = np.zeros((1, 2, 3), np.uint8)
     texels[0, 1] = 255
-    scene = photile.Scene(quad([0, 0, 0], [2, 0, 0], [0, 2, 0]),
-                          uv=[[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]],
-                          materials=[photile.Material("half", (1, 1, 1), texture=texels)],
-                          lights=[photile.Light("lamp", 1, position=(1, 1, 0.5))])
+    scene = photile.Scene(
+        quad([0, 0, 0], [2, 0, 0], [0, 2, 0]),
+        uv=[[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]],
+        materials=[photile.Material("half", (1, 1, 1), texture=texels)],
+        lights=[photile.Light("lamp", 1, position=(1, 1, 0.5))],
+    )
     photons = photile.trace(scene, 20_000)
     reached = 1 - photons.escaped_flux[0] - photons.absorbed_flux[0]
     assert abs(reached) < 1e-6
@@ -124,21 +128,3 @@ def test_the_sky_and_a_temperature_of_a_file(tmp_path):
     (tmp_path / "a.mtl").write_text("newmtl m\nKd 0.5 0.5 0.5\n")
     scene = photile.load(tmp_path / "floor.obj", sky=("uniform", 5000), sun=(180, 45, 20000))
     assert {light.kind for light in scene.lights} == {"environment", "directional"}
-
-
-@pytest.mark.parametrize(
-    "wrong, message",
-    [({"triangles": np.zeros((2, 3))}, "(n, 3, 3)"), ({"normals": np.zeros((5, 3))}, "normals"),
-     ({"uv": np.zeros((12, 3, 3))}, "uv"), ({"triangle_materials": [1] * 12}, "triangle_materials"),
-     ({"lights": [photile.Light("a", 1, "area", triangles=[12])]}, "index 12"),
-     ({"lights": [photile.Light("a", 1, "area")]}, "'a'"),
-     ({"lights": [photile.Light("a", float("nan"))]}, "'a'"),
-     ({"lights": [photile.Light("a", 1, "candle")]}, "candle"), ({"unit": "horsepower"}, "horsepower"),
-     ({"materials": [photile.Material("m", interaction="foam")]}, "foam"),
-     ({"materials": [photile.Material("m", texture=np.zeros((2, 2), np.uint8))]}, "'m'")],
-)
-def test_what_is_wrong_is_named_in_one_line(wrong, message):
-    fields = {"triangles": box(1, 1, 1), "lights": [photile.Light("lamp", 1)], **wrong}
-    with pytest.raises(photile.Error) as error:
-        photile.Scene(**fields)
-    assert message in str(error.value) and "\n" not in str(error.value)

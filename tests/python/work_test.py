@@ -29,6 +29,13 @@ def test_progress_is_told_in_the_calling_thread(lamps):
     assert all(0 <= done <= total for _, done, total, _ in told)
 
 
+def test_progress_is_a_line_of_each_stage(lamps, capsys):
+    photile.trace(lamps, 1_000, progress=True)
+    assert capsys.readouterr().err.startswith("trace photons: 100% of 1,000 paths, ")
+    photile.trace(lamps, 1_000, progress=False)
+    assert capsys.readouterr().err == ""
+
+
 def test_an_exception_of_the_callback_stops_the_work(lamps):
     class Enough(Exception):
         pass
@@ -61,24 +68,31 @@ def test_other_threads_run_meanwhile(lamps):
     assert turns > 20 * seconds  # with the lock held there would be none
 
 
+def interrupted(program, seconds):
+    """What a program prints that gets Ctrl-C this long after it has said that it is ready, and its exit code."""
+    process = subprocess.Popen([sys.executable, "-c", f"import photile\n{program}"], stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout.readline() == "ready\n"
+        time.sleep(seconds)
+        process.send_signal(signal.SIGINT)
+        return *process.communicate(timeout=60), process.returncode
+    finally:
+        process.kill()
+
+
 @pytest.mark.parametrize("work", ["trace(scene, %d)" % LONG,
                                   "render(scene, photons_emitted=%d, passes=50)" % LONG])
 def test_ctrl_c_is_heard(work):
-    program = f"""
-import photile
-corners = [[[0, 0, 0], [1, 0, 0], [0, 1, 0]]]
-scene = photile.Scene(corners, lights=[photile.Light("lamp", 1, position=(0.2, 0.2, 1))])
+    printed, _, code = interrupted(f"""
+scene = photile.Scene([[[0, 0, 0], [1, 0, 0], [0, 1, 0]]], lights=[photile.Light("lamp", 1, position=(0.2, 0.2, 1))])
 print("ready", flush=True)
 try:
     photile.{work}
 except KeyboardInterrupt:
     print("heard", flush=True)
-"""
-    run = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
-    assert run.stdout.readline() == "ready\n"
-    time.sleep(0.3)
-    run.send_signal(signal.SIGINT)
-    assert run.communicate(timeout=60)[0] == "heard\n" and run.returncode == 0
+""", 0.3)
+    assert printed == "heard\n" and code == 0
 
 
 def test_ctrl_c_is_heard_while_a_scene_is_loaded(tmp_path):
@@ -91,20 +105,8 @@ def test_ctrl_c_is_heard_while_a_scene_is_loaded(tmp_path):
         for _ in range(40):
             draw.shuffle(names)
             print("f", *names, file=file)
-    program = f"""
-import photile
-print("ready", flush=True)
-photile.load({str(tmp_path / "crossing.obj")!r})
-"""
-    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True)
-    assert process.stdout.readline() == "ready\n"
-    time.sleep(3)
-    process.send_signal(signal.SIGINT)
-    try:
-        assert process.communicate(timeout=60)[1].endswith("KeyboardInterrupt\n")
-    finally:
-        process.kill()
+    program = f"print('ready', flush=True)\nphotile.load({str(tmp_path / 'crossing.obj')!r})"
+    assert interrupted(program, 3)[1].endswith("KeyboardInterrupt\n")
 
 
 SETUP = """

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "command/command_line.hpp"
-#include "command/daylight_results.hpp"
+#include "command/daylight_options.hpp"
 #include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
@@ -32,6 +32,7 @@
 #include "render/refinement.hpp"
 #include "report/honeybee_files.hpp"
 #include "report/plan_surroundings.hpp"
+#include "report/record.hpp"
 #include "weather/weather_file.hpp"
 
 namespace photile::app {
@@ -59,8 +60,9 @@ std::vector<measuring::SensorGrid> grids_of(const DaylightOptions& options, cons
 }
 
 /// The scene's own lamps at the points; daylight leaves them out.
-YearLamps lamps_of(const DaylightOptions& options, const Scene& scene,
-                   std::span<const Sensor> sensors, const LightMix& mix, Progress& progress) {
+report::YearLamps lamps_of(const DaylightOptions& options, const Scene& scene,
+                           std::span<const Sensor> sensors, const LightMix& mix,
+                           Progress& progress) {
   if (!(options.lamps_to > 0) || scene.lights.empty()) return {};
   std::vector<Device> devices = devices_for(options.render, progress);
   MeasuringParameters parameters = options.parameters;
@@ -72,7 +74,7 @@ YearLamps lamps_of(const DaylightOptions& options, const Scene& scene,
       return group.name == light.light && !scene.lights[group.lights.front()].is_distant();
     });
   });
-  YearLamps lamps{std::move(found), {}};
+  report::YearLamps lamps{std::move(found), {}, options.lamps_to};
   std::vector<MixedLight> lights;
   std::vector<bool> reaches;
   for (const LightIlluminance& lamp : lamps.lux) {
@@ -85,7 +87,7 @@ YearLamps lamps_of(const DaylightOptions& options, const Scene& scene,
   for (const auto& line : measuring::lights_that_reach_nothing(lights, reaches, "point")) {
     progress.warn(line);
   }
-  const std::vector<double> watts = watts_of(scene, mix, options.lamp_efficacy);
+  const std::vector<double> watts = report::watts_of(scene, mix, options.lamp_efficacy);
   for (const LightIlluminance& lamp : lamps.lux) {
     for (std::size_t i = 0; i < watts.size(); ++i) {
       if (mix.lights[i].name == lamp.light) lamps.watts.push_back(watts[i]);
@@ -100,7 +102,7 @@ nlohmann::ordered_json report_of(const DaylightOptions& options, const Scene& sc
   nlohmann::ordered_json record{
       {"photile", version_number()},
       {"scene", scene.source.filename().string()},
-      {"date", today()},
+      {"date", report::today()},
       {"weather", options.render.load.situation.weather.filename().string()},
       {"patches", options.patches},
       {"ground_reflectance", options.asked.ground},
@@ -109,7 +111,7 @@ nlohmann::ordered_json report_of(const DaylightOptions& options, const Scene& sc
       {"maintenance_factor", options.parameters.maintenance},
       {"seed", options.render.parameters.seed}};
   record["report"]["subject"] = "A year of daylight";
-  record["report"]["colours"] = colours_json({});
+  record["report"]["colours"] = report::colours_json({});
   record["report"]["included"].push_back({{"file", ""}, {"content", grids}});
   return record;
 }
@@ -302,7 +304,7 @@ void run_daylight(DaylightOptions& options) {
   const LightMix mix = mix_of(scene, render);
   const auto told = [&](const SkyRounds& rounds) {
     if (rounds.count() == 1) return;
-    const auto results = daylight_results(options, prepared.year, prepared.grids, rounds);
+    const auto results = daylight_results(options.asked, prepared.year, prepared.grids, rounds);
     for (const report::GridDaylight& grid : results.grids) {
       progress.note(fmt::format("{}, {} rounds: {}: {}", format_seconds(watch.seconds()),
                                 rounds.count(), grid.grid.name,
@@ -312,7 +314,8 @@ void run_daylight(DaylightOptions& options) {
   const SkyRounds rounds = rounds_of(
       options, prepared, [&] { return watch.seconds(); }, told, progress);
   const auto lamps = lamps_of(options, scene, year.sensors, mix, progress);
-  const report::DaylightResults results = daylight_results(options, year, grids, rounds, lamps);
+  const report::DaylightResults results =
+      daylight_results(options.asked, year, grids, rounds, lamps);
   write(options, scene, results, year.hours);
   for (const auto& line : report::daylight_lines(results, options.asked)) std::cout << line << '\n';
 }
@@ -364,8 +367,8 @@ void refine_year(DaylightOptions options, const std::function<void(std::vector<s
   QuietProgress quiet(progress);
   PreparedYear prepared = prepare_year(options, quiet);
   const auto told = [&](const SkyRounds& rounds) {
-    tell(report::daylight_lines(daylight_results(options, prepared.year, prepared.grids, rounds),
-                                options.asked));
+    tell(report::daylight_lines(
+        daylight_results(options.asked, prepared.year, prepared.grids, rounds), options.asked));
   };
   rounds_of(
       options, prepared, [&] { return watch.seconds(); }, told, quiet);

@@ -86,19 +86,6 @@ std::vector<glare::Observer> observers_of(const GlareOptions& options, const Sce
   return all;
 }
 
-/// Area of the luminaires over that of the ceiling of the first observer's room; 1 where there is
-/// no such room.
-double coverage_of(const GlareOptions& options, const Scene& scene,
-                   const glare::Observer& observer) {
-  const trace::PlanAxes axes;
-  const RayScene rays(scene);
-  const double area = glare::Luminaires(rays, options.parameters.samples).large_area(axes.up);
-  if (!(area > 0)) return 1;
-  const auto room = trace::Room::around(rays, axes, position_in_scene(scene, observer.position));
-  if (!room) return 1;
-  return area / (static_cast<double>(room->positions().size()) * room->cell_area());
-}
-
 /// The highest UGR beside the required one; none where nothing is required.
 std::optional<measuring::Judgement> judged(const GlareOptions& options,
                                            std::span<const glare::ObserverGlare> all) {
@@ -196,9 +183,10 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
       write_hdr(picture_name(options, i), root);
     };
   }
-  const auto all =
-      glare::measure_glare(scene, observers, mix, coverage_of(options, scene, observers.front()),
-                           devices, parameters, keep, progress);
+  const auto all = glare::measure_glare(
+      scene, observers, mix,
+      glare::coverage_by_luminaires(scene, observers.front(), parameters.samples), devices,
+      parameters, keep, progress);
   std::vector<bool> reaches(all.front().reached_by.size(), false);
   for (const glare::ObserverGlare& each : all) {
     for (std::size_t i = 0; i < reaches.size(); ++i) reaches[i] = reaches[i] || each.reached_by[i];

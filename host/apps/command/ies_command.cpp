@@ -18,7 +18,7 @@
 #include "loading/light_changes.hpp"
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
-#include "report/luminaires.hpp"
+#include "report/record.hpp"
 
 namespace photile::app {
 namespace {

@@ -134,18 +134,7 @@ std::optional<double> north_of(const MeasureOptions& options) {
 std::vector<std::string> warnings_of(const Scene& scene, const LightMix& mix,
                                      const std::vector<measuring::SensorGrid>& grids) {
   std::vector<std::string> lines = doubts_of(scene, mix);
-  if (has_hidden_caustics(scene)) {
-    lines.emplace_back(
-        "light of point, spot and directional lights that mirrors and glass cast onto sensors is "
-        "missing; that of area lights is included");
-  }
-  const std::size_t covered = measuring::covered_sensors(scene, grids);
-  if (covered > 0) {
-    lines.push_back(
-        fmt::format("{} points have a surface less than 1 cm in front of them; they may lie in "
-                    "furniture or just below a table top",
-                    covered));
-  }
+  for (auto& line : measuring::doubts_of(scene, grids)) lines.push_back(std::move(line));
   return lines;
 }
 
@@ -214,12 +203,13 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   }
   outputs.check_picture(scene, progress);
   outputs.write(measurement,
-                {scene, mix, parameters, render.mood.mood, requirement, moods, glare,
+                {scene, mix, parameters, render.mood.mood, requirement, glare,
                  outputs.any_record()
                      ? measuring::room_size(scene, plane_at(options.places.plane, "floor").inside)
                      : std::nullopt,
                  loading::ground_reflectance(render.load), loading::sky_facts(render.load),
-                 std::move(warnings), north_of(options)});
+                 std::move(warnings), north_of(options), version_number()},
+                moods);
   for (const auto& line : report::measurement_lines(measurement, outputs.unit())) {
     std::cout << line << '\n';
   }

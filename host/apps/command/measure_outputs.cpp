@@ -13,9 +13,7 @@
 #include "common/files.hpp"
 #include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
-#include "photile/ray_scene.hpp"
 #include "report/honeybee_files.hpp"
-#include "report/plan_surroundings.hpp"
 #include "report/printing.hpp"
 #include "report/tables.hpp"
 #include "view/moods.hpp"
@@ -24,72 +22,6 @@ namespace photile::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json target_json(const measuring::Measurement& measurement,
-                 const measuring::Requirement& requirement,
-                 const std::optional<measuring::Judgement>& glare) {
-  std::vector<measuring::Judgement> all;
-  for (const auto& values : measurement) {
-    for (const auto& judgement : measuring::judge(values, requirement)) all.push_back(judgement);
-  }
-  if (glare) all.push_back(*glare);
-  Json json{{"name", requirement.name},    {"reference", requirement.reference},
-            {"what", requirement.what},    {"ugr_limit", requirement.glare},
-            {"ra", requirement.rendering}, {"judgements", Json::array()}};
-  for (const auto& judgement : all) {
-    json["judgements"].push_back({{"grid", judgement.grid},
-                                  {"figure", judgement.figure},
-                                  {"required", judgement.required},
-                                  {"at_most", judgement.at_most},
-                                  {"value", judgement.measured.value},
-                                  {"standard_error", judgement.measured.standard_error},
-                                  {"met", judgement.met()},
-                                  {"doubtful", judgement.doubtful()}});
-  }
-  return json;
-}
-
-Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
-              const std::string& unit) {
-  const MeasuringParameters& parameters = run.parameters;
-  const bool planar = parameters.gathering.response == SensorResponse::planar;
-  Json record{{"photile", version_number()},
-              {"scene", run.scene.source.filename().string()},
-              {"date", today()},
-              {"unit", unit},
-              {"response", planar ? "planar" : "cylindrical"},
-              {"maintenance_factor", parameters.maintenance},
-              {"integrator", parameters.by_paths ? "path" : "photon-map"},
-              {"seed", parameters.photons.seed},
-              {"repeats", parameters.repeats},
-              {"rays", parameters.gathering.rays}};
-  if (!parameters.by_paths) {
-    record["photons"] = parameters.photons.photons.emitted_photons;
-    record["neighbours"] = parameters.photons.neighbours;
-  }
-  if (!run.mood.empty()) record["mood"] = run.mood;
-  if (run.ground) record["ground_reflectance"] = *run.ground;
-  for (const auto& [name, value] : run.sky) record["sky"][name] = value;
-  if (!run.warnings.empty()) record["warnings"] = run.warnings;
-  record["lumen_per_watt"] = run.mix.lumen_per_watt;
-  for (const MixedLight& light : run.mix.lights) {
-    record["lights"].push_back(
-        {{"name", light.name}, {"power", light.power}, {"unit", symbol_of(light.unit)}});
-  }
-  if (run.requirement) record["target"] = target_json(measurement, *run.requirement, run.glare);
-  if (const auto& room = run.room) {
-    record["room"] = {
-        {"area", room->area}, {"sides", {room->sides.x, room->sides.y}}, {"height", room->height}};
-  }
-  add_scene(run.scene, run.mix, record);
-  record["grids"] = report::measurement_json(measurement);
-  const RayScene rays(run.scene);
-  for (std::size_t i = 0; i < measurement.size(); ++i) {
-    const auto& layout = measurement[i].grid.layout;
-    if (layout) record["grids"][i]["plan"] = report::plan_json(rays, *layout, run.north);
-  }
-  return record;
-}
 
 /// As a page holds it. Errors: those of read_input_text; InputError for another kind of file.
 std::string logo_of(const std::filesystem::path& file) {
@@ -193,27 +125,29 @@ void MeasureOutputs::check_picture(const Scene& scene, Progress& progress) const
 }
 
 Json MeasureOutputs::record_of(const measuring::Measurement& measurement,
-                               const MeasureRun& run) const {
+                               const report::MeasureRun& run,
+                               const std::filesystem::path& moods) const {
   Json record = run_json(measurement, run, unit_);
   if (!options_.maintenance.empty()) record["maintenance"] = options_.maintenance;
   record["report"] = {{"project", options_.project},          {"client", options_.client},
                       {"designer", options_.designer},        {"logo", logo_},
                       {"language", options_.report.language}, {"colours", colours_json(colours_)}};
   if (!options_.picture.empty()) {
-    record["report"]["pictures"] = report_pictures(options_.picture, run.moods, colours_);
+    record["report"]["pictures"] = report_pictures(options_.picture, moods, colours_);
   }
   if (!options_.report.included.empty()) record["report"]["included"] = options_.report.included;
   return record;
 }
 
-void MeasureOutputs::write(const measuring::Measurement& measurement, const MeasureRun& run) const {
+void MeasureOutputs::write(const measuring::Measurement& measurement, const report::MeasureRun& run,
+                           const std::filesystem::path& moods) const {
   if (!options_.honeybee.empty()) {
     write_honeybee(options_.honeybee,
                    [&](const auto&) { return report::honeybee_record(measurement); });
   }
   std::vector<measuring::SensorGrid> grids;
   for (const auto& values : measurement) grids.push_back(values.grid);
-  const Json record = any_record() ? record_of(measurement, run) : Json();
+  const Json record = any_record() ? record_of(measurement, run, moods) : Json();
   write_results(options_.outputs,
                 {.csv = [&] { return report::measurement_csv(measurement, unit_, run.ground); },
                  .json = [&] { return json_text(record); },

@@ -4,17 +4,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "command/output_files.hpp"
 #include "command/report_contents.hpp"
 #include "measuring/measurement.hpp"
-#include "measuring/requirements.hpp"
-#include "measuring/working_plane.hpp"
-#include "photile/layered_picture.hpp"
-#include "photile/scene.hpp"
-#include "report/false_colour.hpp"
+#include "report/record.hpp"
 
 namespace CLI {
 class App;
@@ -36,23 +31,6 @@ struct MeasureOutputOptions {
 
 /// Adds -o, --honeybee and the options of false colour.
 void add_measure_output_options(CLI::App& command, MeasureOutputOptions& options);
-
-/// What was measured, and how.
-struct MeasureRun {
-  const Scene& scene;
-  const LightMix& mix;
-  const MeasuringParameters& parameters;
-  std::string mood = {};  ///< "" = none
-  std::optional<measuring::Requirement> requirement = std::nullopt;
-  std::filesystem::path moods = {};  ///< file of those that a report shows; "" = none
-  std::optional<measuring::Judgement> glare = std::nullopt;  ///< the highest UGR that is included
-  std::optional<measuring::RoomSize> room = std::nullopt;
-  std::optional<double> ground = std::nullopt;  ///< its reflectance; none without a sky
-  /// What the sky is: name and value.
-  std::vector<std::pair<std::string, std::string>> sky = {};
-  std::vector<std::string> warnings = {};      ///< of the scene, the points and the lights
-  std::optional<double> north = std::nullopt;  ///< degrees clockwise from -z; none = not stated
-};
 
 class MeasureOutputs {
  public:
@@ -82,11 +60,14 @@ class MeasureOutputs {
   const std::string& unit() const { return unit_; }
 
   /// Errors: OutputError.
-  void write(const measuring::Measurement& measurement, const MeasureRun& run) const;
+  ///   moods   file of those that a report shows; "" = none
+  void write(const measuring::Measurement& measurement, const report::MeasureRun& run,
+             const std::filesystem::path& moods) const;
 
  private:
   nlohmann::ordered_json record_of(const measuring::Measurement& measurement,
-                                   const MeasureRun& run) const;
+                                   const report::MeasureRun& run,
+                                   const std::filesystem::path& moods) const;
 
   const MeasureOutputOptions& options_;
   std::string unit_;

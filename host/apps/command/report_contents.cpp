@@ -1,10 +1,8 @@
 #include "command/report_contents.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -12,20 +10,13 @@
 #include <utility>
 
 #include "command/output_files.hpp"
-#include "command/scene_report.hpp"
 #include "command/terminal_progress.hpp"
-#include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
-#include "photile/light_layers.hpp"
 #include "report/false_colour.hpp"
-#include "report/luminaires.hpp"
-#include "report/plan_surroundings.hpp"
 #include "report/printing.hpp"
-#include "report/tables.hpp"
-#include "scene/surface_models.hpp"
 #include "view/moods.hpp"
 
 namespace photile::app {
@@ -59,8 +50,6 @@ void add_pictures(const LayeredPicture& picture, const std::string& caption,
 
 }  // namespace
 
-std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr))); }
-
 bool has_any(const std::vector<std::string>& files, std::initializer_list<const char*> endings) {
   return std::any_of(files.begin(), files.end(), [&](const std::string& file) {
     return std::any_of(endings.begin(), endings.end(),
@@ -82,16 +71,6 @@ std::size_t planes_of(const std::vector<measuring::SensorGrid>& grids) {
       grids.begin(), grids.end(), [](const auto& grid) { return grid.layout.has_value(); }));
 }
 
-std::vector<double> lumens_of(const Scene& scene, const LightMix& mix) {
-  // Radiant watts would be read as those of the mains.
-  const LightGroups groups = light_groups_of(scene);
-  std::vector<double> lumens = powers_of(scene, mix);
-  for (std::size_t i = 0; i < lumens.size(); ++i) {
-    if (mix.lights[groups.group_of[i]].unit == PowerUnit::watt) lumens[i] *= mix.lumen_per_watt;
-  }
-  return lumens;
-}
-
 void note_plans(const std::vector<std::string>& files, std::size_t plans) {
   for (const std::string& file : files) {
     if (!is_plan(file)) continue;
@@ -102,85 +81,6 @@ void note_plans(const std::vector<std::string>& files, std::size_t plans) {
     if (plans == 1) continue;
     for (const auto& name : plan_names(file, plans)) note_output(name);
   }
-}
-
-std::vector<double> watts_of(const Scene& scene, const LightMix& mix, double efficacy) {
-  const LightGroups groups = light_groups_of(scene);
-  const std::vector<double> lumens = lumens_of(scene, mix);
-  std::vector<double> stated(mix.lights.size()), all(mix.lights.size());
-  std::vector<bool> known(mix.lights.size(), true);
-  for (std::size_t i = 0; i < lumens.size(); ++i) {
-    const std::uint32_t group = groups.group_of[i], file = scene.lights[i].distribution;
-    const IntensityDistribution* const lamp = file == none ? nullptr : &scene.distributions[file];
-    all[group] += lumens[i];
-    if (lamp != nullptr && lamp->data().watts > 0) {
-      stated[group] += lamp->electrical_watts(lumens[i]);
-    } else {
-      known[group] = false;
-    }
-  }
-  for (std::size_t group = 0; group < all.size(); ++group) {
-    if (!known[group]) stated[group] = all[group] / efficacy;
-  }
-  return stated;
-}
-
-void add_scene(const Scene& scene, const LightMix& mix, nlohmann::ordered_json& record) {
-  using Json = nlohmann::ordered_json;
-  const std::vector<double> lumens = lumens_of(scene, mix);
-  Json lamps = Json::array(), files = Json::array(), surfaces = Json::array();
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    const Light& light = scene.lights[i];
-    const auto place = report::place_of(scene, light);
-    const bool measured = light.distribution != none;
-    lamps.push_back(
-        {{"number", i + 1},
-         {"name", light.name},
-         {"kind", kind_name(light)},
-         {"file", measured ? scene.distributions[light.distribution].name() : ""},
-         {"position", place ? report::vector_json(position_in_world(scene, *place)) : Json()},
-         {"lumens", lumens[i]}});
-  }
-  for (const report::Part& part : report::parts_of(scene, lumens)) {
-    const auto planes = report::intensities_of(*part.lamp);
-    files.push_back({{"name", part.lamp->name()},
-                     {"pieces", part.count},
-                     {"lumens", part.lumens},
-                     {"watts", part.watts},
-                     {"flux", part.lamp->flux()},
-                     {"ra", part.lamp->data().rendering},
-                     {"round", part.lamp->opening().shape != LuminousOpening::Shape::box},
-                     {"data", report::data_rows(*part.lamp)},
-                     {"intensities", {{"C0", planes[0]}, {"C90", planes[1]}}}});
-  }
-  std::vector<bool> used(scene.materials.size(), false);
-  for (const std::uint32_t material : scene.triangle_material) used[material] = true;
-  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    if (!used[i]) continue;
-    const auto reflectance = scene::reflectance_of(scene, scene.materials[i]);
-    if (!reflectance) continue;
-    surfaces.push_back(
-        {{"material", scene.materials[i].name}, {"reflectance", reflectance->whole}});
-  }
-  record["luminaires"] = std::move(lamps);
-  record["photometry"] = std::move(files);
-  record["reflectances"] = std::move(surfaces);
-}
-
-nlohmann::ordered_json colours_json(const report::FalseColour& colours) {
-  constexpr int last = 255;
-  const report::Palette palette(colours.palette);
-  std::string all;
-  for (int i = 0; i <= last; ++i) {
-    if (i > 0) all += ' ';
-    all += palette.hex(static_cast<double>(i) / last);
-  }
-  return {{"scale", colours.scale},
-          {"steps", colours.steps},
-          {"decades", colours.decades},
-          {"label", colours.label},
-          {"contours", name_in({"cells", "isolines", "bands", "steps"}, colours.contours)},
-          {"palette", all}};
 }
 
 std::filesystem::path moods_of_report(const std::string& given,

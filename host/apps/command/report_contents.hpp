@@ -11,14 +11,9 @@
 
 #include "command/report_program.hpp"
 #include "measuring/sensor_grid.hpp"
-#include "photile/layered_picture.hpp"
-#include "photile/scene.hpp"
 #include "report/false_colour.hpp"
 
 namespace photile::app {
-
-/// Such as 2026-11-23.
-std::string today();
 
 /// The outputs of a command by the endings of their names: tables, and what photile.report draws.
 struct Results {
@@ -41,20 +36,6 @@ std::size_t planes_of(const std::vector<measuring::SensorGrid>& grids);
 /// Notes the files of plans for check_outputs, which knows that of a single one already. Errors:
 /// UsageError where there is nothing to draw; those of note_output.
 void note_plans(const std::vector<std::string>& files, std::size_t plans);
-
-/// W that each layer of the mix takes from the mains: in proportion to its lumens what its
-/// luminaires' files state, and where one of them states nothing by an efficacy (lm/W).
-std::vector<double> watts_of(const Scene& scene, const LightMix& mix, double efficacy);
-
-/// lm of each of the scene's lights.
-std::vector<double> lumens_of(const Scene& scene, const LightMix& mix);
-
-/// Adds what a report says of the scene beside what was measured: luminaires with their numbers on
-/// plans, photometric files, reflectances of opaque materials that triangles have.
-void add_scene(const Scene& scene, const LightMix& mix, nlohmann::ordered_json& record);
-
-/// The options of false colour, with the colours of the palette from low to high.
-nlohmann::ordered_json colours_json(const report::FalseColour& colours);
 
 /// The file of moods for a report: the one that is given, else the scene's, "" where there is none.
 std::filesystem::path moods_of_report(const std::string& given, const std::filesystem::path& scene);

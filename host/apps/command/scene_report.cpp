@@ -15,6 +15,7 @@
 #include "measuring/measurement.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/defaults.hpp"
+#include "report/record.hpp"
 #include "report/tables.hpp"
 #include "scene/panes.hpp"
 #include "scene/scene_queries.hpp"
@@ -76,7 +77,7 @@ struct StatedPower {
 
 std::vector<StatedPower> stated_powers(const Scene& scene, const LightMix& mix) {
   const LightGroups groups = light_groups_of(scene);
-  const std::vector<double> powers = powers_of(scene, mix);
+  const std::vector<double> powers = report::powers_of(scene, mix);
   std::vector<StatedPower> stated;
   for (std::size_t i = 0; i < powers.size(); ++i) {
     const PowerUnit unit = mix.lights[groups.group_of[i]].unit;
@@ -118,7 +119,7 @@ std::string source_of(const Scene& scene, const Light& light) {
 json light_json(const Light& light, const std::string& source, const StatedPower& stated,
                 double lumen_per_watt) {
   json entry{{"name", light.name},
-             {"kind", kind_name(light)},
+             {"kind", report::kind_name(light)},
              {"color", components(light.color)},
              {"triangles", light.triangles.size()},
              {"two_sided", light.two_sided}};
@@ -184,22 +185,6 @@ json camera_json(const Camera& camera) {
 
 }  // namespace
 
-std::string_view kind_name(const Light& light) {
-  if (light.distribution != none) return "photometric";
-  if (light.is_sky_patch()) return name_of(LightKind::environment);
-  if (light.kind == LightKind::directional && light.has_size()) return "sun";
-  return name_of(light.kind);
-}
-
-std::vector<double> powers_of(const Scene& scene, const LightMix& mix) {
-  const LightGroups groups = light_groups_of(scene);
-  std::vector<double> powers;
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    powers.push_back(groups.fraction[i] * mix.lights[groups.group_of[i]].power);
-  }
-  return powers;
-}
-
 Extents extents_of(const Scene& scene) {
   Extents extents{glm::dvec3(std::numeric_limits<double>::infinity()),
                   glm::dvec3(-std::numeric_limits<double>::infinity())};
@@ -244,7 +229,7 @@ std::vector<std::string> scene_summary(const Scene& scene, const LightMix& mix) 
     const std::string source = source_of(scene, light);
     const double watts = powers[i].electrical_watts;
     lines.push_back(fmt::format(
-        "light: {}: {}{}{}{}{}", light.name, kind_name(light),
+        "light: {}: {}{}{}{}{}", light.name, report::kind_name(light),
         emission_text(scene, light, powers[i], mix.lumen_per_watt),
         watts > 0 ? fmt::format(", takes {}", format_power(watts, PowerUnit::watt)) : "",
         light.group.empty() ? "" : ", of group " + light.group,

@@ -20,12 +20,6 @@ struct Extents {
 };
 Extents extents_of(const Scene& scene);
 
-/// "area", "point", "spot", "photometric", "sun", "directional" or "environment".
-std::string_view kind_name(const Light& light);
-
-/// Power of each light in the mix; lights of a group change together.
-std::vector<double> powers_of(const Scene& scene, const LightMix& mix);
-
 /// One line for all patches of a sky; none where the mix has no whole sky of patches.
 std::vector<std::string> sky_summary(const LightMix& mix);
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "command/command_line.hpp"
-#include "command/daylight_results.hpp"
+#include "command/daylight_options.hpp"
 #include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"

@@ -118,6 +118,16 @@ Camera eye_of(const Scene& scene, const Observer& in_file) {
   return camera;
 }
 
+double coverage_by_luminaires(const Scene& scene, const Observer& observer, int samples) {
+  const trace::PlanAxes axes;
+  const RayScene rays(scene);
+  const double area = Luminaires(rays, samples).large_area(axes.up);
+  if (!(area > 0)) return 1;
+  const auto room = trace::Room::around(rays, axes, position_in_scene(scene, observer.position));
+  if (!room) return 1;
+  return area / (static_cast<double>(room->positions().size()) * room->cell_area());
+}
+
 std::vector<ObserverGlare> measure_glare(const Scene& scene, std::span<const Observer> observers,
                                          const LightMix& mix, double coverage,
                                          std::span<Device> devices,

@@ -48,8 +48,12 @@ struct ObserverGlare {
 using KeepPicture =
     std::function<void(std::size_t observer, const Camera& camera, const LightLayers& layers)>;
 
+/// Area of the luminaires over that of the ceiling of the observer's room; 1 where there is no such
+/// room.
+double coverage_by_luminaires(const Scene& scene, const Observer& observer, int samples);
+
 /// Rates the glare of each observer.
-///   coverage   of the ceiling by luminaires, as `ggr` takes it
+///   coverage   as `ggr` takes it
 ///   devices    may be empty for paths
 ///   keep       is called with each picture
 /// Errors: those of `gather` and `render`.

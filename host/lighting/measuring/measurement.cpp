@@ -311,15 +311,28 @@ std::vector<Portal> portals_of_grids(const Scene& scene, std::span<const SensorG
   return trace::portals_asked_for(scene, asked, points);
 }
 
-std::size_t covered_sensors(const Scene& scene, std::span<const SensorGrid> grids) {
+std::vector<std::string> doubts_of(const Scene& scene, std::span<const SensorGrid> grids) {
   constexpr double near = 0.01;  // metres
+  std::vector<std::string> lines;
+  if (has_hidden_caustics(scene)) {
+    lines.emplace_back(
+        "light of point, spot and directional lights that mirrors and glass cast onto sensors is "
+        "missing; that of area lights is included");
+  }
   const RayScene rays(scene);
   const trace::FlushDenormals flush_denormals;
   const std::vector<Sensor> sensors = sensors_of(scene, grids);
-  return static_cast<std::size_t>(std::ranges::count_if(sensors, [&](const Sensor& sensor) {
+  const auto covered = std::ranges::count_if(sensors, [&](const Sensor& sensor) {
     return trace::occluded(rays, glm::vec3(sensor.position + 1e-4 * sensor.normal),
                            glm::vec3(sensor.position + near * sensor.normal));
-  }));
+  });
+  if (covered > 0) {
+    lines.push_back(
+        fmt::format("{} points have a surface less than 1 cm in front of them; they may lie in "
+                    "furniture or just below a table top",
+                    covered));
+  }
+  return lines;
 }
 
 }  // namespace photile::measuring

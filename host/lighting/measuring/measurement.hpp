@@ -125,8 +125,8 @@ Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, co
 std::vector<Portal> portals_of_grids(const Scene& scene, std::span<const SensorGrid> grids,
                                      std::span<const std::string> asked);
 
-/// Sensors with a surface less than a centimetre in front of them: most are in furniture, or just
-/// below a top.
-std::size_t covered_sensors(const Scene& scene, std::span<const SensorGrid> grids);
+/// Warnings before anything is measured: sensors with a surface less than a centimetre in front of
+/// them, which are in furniture or just below a top, and light that cannot reach any.
+std::vector<std::string> doubts_of(const Scene& scene, std::span<const SensorGrid> grids);
 
 }  // namespace photile::measuring

@@ -1,4 +1,4 @@
-// A year of daylight as text: lines, CSV, JSON.
+// A year of daylight as figures, and as text: lines, CSV, JSON.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,10 @@
 #include <vector>
 
 #include "daylight/daylight_metrics.hpp"
+#include "daylight/sky_states.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/defaults.hpp"
+#include "photile/sensors.hpp"
 
 namespace photile::report {
 
@@ -46,6 +48,21 @@ struct DaylightAsked {
   std::vector<bool> occupied;  ///< by the hour
   double ground = defaults::ground_reflectance;
 };
+
+/// The scene's lamps at full power.
+struct YearLamps {
+  std::vector<LightIlluminance> lux = {};  ///< of each, at the sensors of the year
+  std::vector<double> watts = {};          ///< that each takes
+  double target_lux = 0;                   ///< that they maintain together
+};
+
+/// By the schedule of the blinds, with the sun as it is without them (IES LM-83), then in each of
+/// their states.
+/// With several rounds, figures have standard errors, except those of a single state.
+///   rounds   of states as sky_states has them
+DaylightResults daylight_results(const DaylightAsked& asked, const daylight::Year& year,
+                                 const std::vector<measuring::SensorGrid>& grids,
+                                 const daylight::SkyRounds& rounds, const YearLamps& lamps = {});
 
 /// What to say where next to no light of the sky reaches any point: less than 0.1%.
 ///   most_percent   of the points: per cent of the light on open ground

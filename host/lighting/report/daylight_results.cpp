@@ -1,23 +1,19 @@
-#include "command/daylight_results.hpp"
-
 #include <tbb/parallel_for.h>
 
 #include <span>
 #include <utility>
 
-#include "daylight/daylight_metrics.hpp"
+#include "report/daylight_tables.hpp"
 
-namespace photile::app {
+namespace photile::report {
 
 using namespace daylight;
-using report::GridDaylight;
 
 namespace {
 
 /// What the lamps over a grid use in a year.
-std::vector<LampEnergy> energies_of(const DaylightOptions& options, const YearLamps& lamps,
-                                    const std::vector<bool>& occupied, const GridDaylight& grid,
-                                    std::size_t first) {
+std::vector<LampEnergy> energies_of(const YearLamps& lamps, const std::vector<bool>& occupied,
+                                    const GridDaylight& grid, std::size_t first) {
   if (lamps.lux.empty()) return {};
   const std::size_t count = grid.grid.sensors.size(), hours = occupied.size();
   std::vector<double> mean(hours, 0.0), of_lamp;
@@ -30,7 +26,7 @@ std::vector<LampEnergy> energies_of(const DaylightOptions& options, const YearLa
     names.push_back(lamp.light);
     of_lamp.push_back(sum / static_cast<double>(count));
   }
-  return lamp_energy(mean, occupied, names, of_lamp, lamps.watts, options.lamps_to);
+  return lamp_energy(mean, occupied, names, of_lamp, lamps.watts, lamps.target_lux);
 }
 
 /// Light of all points.
@@ -41,7 +37,7 @@ struct LightOfPoints {
 };
 
 /// The light of a grid's points, the first of which is that of the year's sensors.
-std::vector<PointDaylight> points_of(const DaylightOptions& options, const Year& year,
+std::vector<PointDaylight> points_of(const DaylightAsked& asked, const Year& year,
                                      const std::vector<float>& lux, const std::vector<float>& sun,
                                      std::size_t first, std::size_t count) {
   const std::vector<bool> by_day = daylight_hours(year.hours);
@@ -52,16 +48,14 @@ std::vector<PointDaylight> points_of(const DaylightOptions& options, const Year&
       return all.empty() ? std::span<const float>()
                          : std::span(all).subspan((first + sensor) * hours, hours);
     };
-    points[sensor] = point_daylight(row(lux), row(sun), options.asked.occupied, by_day,
-                                    options.asked.target_lux);
+    points[sensor] = point_daylight(row(lux), row(sun), asked.occupied, by_day, asked.target_lux);
   });
   return points;
 }
 
-std::vector<GridDaylight> results_of(const DaylightOptions& options, const Year& year,
+std::vector<GridDaylight> results_of(const DaylightAsked& asked, const Year& year,
                                      const std::vector<measuring::SensorGrid>& grids,
                                      const LightOfPoints& light, const YearLamps& lamps) {
-  const std::vector<bool>& occupied = options.asked.occupied;
   const std::size_t hours = year.hours.size();
   std::vector<GridDaylight> results;
   std::size_t first = 0;
@@ -78,9 +72,9 @@ std::vector<GridDaylight> results_of(const DaylightOptions& options, const Year&
     result.lux = part(light.lux, hours);
     result.sun = part(light.sun, hours);
     result.relative_error = part(light.matrix.relative_error, 1);
-    result.points = points_of(options, year, light.lux, light.sun, first, count);
+    result.points = points_of(asked, year, light.lux, light.sun, first, count);
     result.room = room_daylight(result.points);
-    result.lamps = energies_of(options, lamps, occupied, result, first);
+    result.lamps = energies_of(lamps, asked.occupied, result, first);
     first += count;
     results.push_back(std::move(result));
   }
@@ -93,7 +87,7 @@ std::vector<float> lux_of_year(const Year& year, std::vector<SkyState>& states) 
   return states.size() == 1 ? std::move(states.front().lux) : scheduled_sky(year, states).lux;
 }
 
-void add_errors(const DaylightOptions& options, const Year& year, const SkyRounds& rounds,
+void add_errors(const DaylightAsked& asked, const Year& year, const SkyRounds& rounds,
                 std::vector<GridDaylight>& grids) {
   const std::vector<double> shares = rounds.part_fractions();
   if (shares.size() < 2) return;
@@ -104,7 +98,7 @@ void add_errors(const DaylightOptions& options, const Year& year, const SkyRound
     std::size_t first = 0;
     for (std::size_t g = 0; g < grids.size(); ++g) {
       const std::size_t count = grids[g].points.size();
-      without[g].push_back(points_of(options, year, lux, sun, first, count));
+      without[g].push_back(points_of(asked, year, lux, sun, first, count));
       first += count;
     }
   }
@@ -115,28 +109,28 @@ void add_errors(const DaylightOptions& options, const Year& year, const SkyRound
 
 }  // namespace
 
-report::DaylightResults daylight_results(const DaylightOptions& options, const Year& year,
-                                         const std::vector<measuring::SensorGrid>& grids,
-                                         const SkyRounds& rounds, const YearLamps& lamps) {
-  report::DaylightResults results;
+DaylightResults daylight_results(const DaylightAsked& asked, const Year& year,
+                                 const std::vector<measuring::SensorGrid>& grids,
+                                 const SkyRounds& rounds, const YearLamps& lamps) {
+  DaylightResults results;
   results.rounds = rounds.count();
   std::vector<SkyState> states = rounds.mean();
   light_hours(year, states);
   const SkyState& open = states.front();
   if (states.size() == 1) {
-    results.grids = results_of(options, year, grids, {open.lux, open.sun, open.matrix}, lamps);
+    results.grids = results_of(asked, year, grids, {open.lux, open.sun, open.matrix}, lamps);
   } else {
     const ScheduledSky scheduled = scheduled_sky(year, states);
     results.state_of_hour = scheduled.state_of_hour;
-    results.grids = results_of(options, year, grids, {scheduled.lux, open.sun, open.matrix}, lamps);
+    results.grids = results_of(asked, year, grids, {scheduled.lux, open.sun, open.matrix}, lamps);
     for (const SkyState& state : states) {
       results.states.push_back(
           {state.name,
-           results_of(options, year, grids, {state.lux, state.sun, state.matrix}, lamps)});
+           results_of(asked, year, grids, {state.lux, state.sun, state.matrix}, lamps)});
     }
   }
-  add_errors(options, year, rounds, results.grids);
+  add_errors(asked, year, rounds, results.grids);
   return results;
 }
 
-}  // namespace photile::app
+}  // namespace photile::report

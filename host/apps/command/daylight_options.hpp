@@ -1,4 +1,4 @@
-// The figures of `photile daylight` from light by the hour.
+// The options of `photile daylight`.
 #pragma once
 
 #include <functional>
@@ -8,8 +8,6 @@
 #include "command/render_options.hpp"
 #include "command/report_program.hpp"
 #include "command/sensor_options.hpp"
-#include "daylight/sky_states.hpp"
-#include "measuring/sensor_grid.hpp"
 #include "photile/defaults.hpp"
 #include "photile/progress.hpp"
 #include "photile/sensors.hpp"
@@ -44,21 +42,6 @@ struct DaylightOptions {
     return blinds.size() == 1 && blinds.front().find('=') == std::string::npos;
   }
 };
-
-/// The scene's lamps at full power.
-struct YearLamps {
-  std::vector<LightIlluminance> lux;  ///< of each, at the sensors of the year
-  std::vector<double> watts;          ///< that each takes
-};
-
-/// By the schedule of the blinds, with the sun as it is without them (IES LM-83), then in each of
-/// their states.
-/// With several rounds, figures have standard errors, except those of a single state.
-///   rounds   of states as sky_states has them
-report::DaylightResults daylight_results(const DaylightOptions& options, const daylight::Year& year,
-                                         const std::vector<measuring::SensorGrid>& grids,
-                                         const daylight::SkyRounds& rounds,
-                                         const YearLamps& lamps = {});
 
 /// Rounds of a year for the options' seconds, without outputs, lamps and blinds.
 ///   tell   is given the lines of `photile daylight` after the first round, the second, the fourth

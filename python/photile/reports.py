@@ -1,0 +1,130 @@
+"""Reports of what was measured, rated and assessed."""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import pathlib
+import tempfile
+from collections.abc import Sequence
+from typing import Any, Optional, Union
+
+import numpy as np
+
+from .errors import InputError, OutputError, UsageError
+from .glare_ratings import Glare
+from .measuring import Illuminance
+from .report import command
+from .scenes import File
+from .years import Daylight
+
+__all__ = ["write_report"]
+
+Results = Union[Illuminance, Glare, Daylight]
+
+
+def write_report(
+    file: File,
+    *results: Union[Results, Sequence[Results]],
+    target: str = "",
+    project: str = "",
+    client: str = "",
+    designer: str = "",
+    logo: Optional[File] = None,
+    language: str = "en",
+    template: Optional[File] = None,
+) -> None:
+    """Write a report (.html, .pdf) or plans (.svg, .dxf), as `photile measure -o` does.
+
+    It needs jinja2 and contourpy, for PDF weasyprint, for DXF ezdxf.
+
+    Parameters
+    ----------
+    file : path
+        Ends in .html, .pdf, .svg or .dxf.
+    *results : Illuminance, Glare, Daylight, or sequences of these
+        At least one illuminance; all are those of one call of `measure`.
+    target : str
+        Requirements by name, such as "office-desk", or values, such as "Em=500,Uo=0.6"; the highest UGR is
+        that of the results.
+    project, client, designer : str
+        At the head of the report; with a client it ends with lines for signatures.
+    logo : path, optional
+        A PNG or a JPEG.
+    language : str
+        "en", "de", or one whose words the template has.
+    template : path, optional
+        A folder of templates that replace photile's.
+
+    Raises
+    ------
+    InputError
+        The logo is no picture, or the template has an error.
+    OutputError
+        The file cannot be written, or a package is missing.
+    UsageError
+        There is no such target or language, the file has another ending, or there is no illuminance.
+    """
+    listed: list[Results] = []
+    for each in results:
+        listed.extend(each if isinstance(each, Sequence) else [each])
+    if not all(isinstance(each, (Illuminance, Glare, Daylight)) for each in listed):
+        raise UsageError("results: give what photile.measure, photile.glare or photile.daylight returned")
+    record = _record(listed, target)
+    about = {"project": project, "client": client, "designer": designer, "language": language,
+             "logo": "" if logo is None else _logo(os.fspath(logo)), "included": _included(listed)}
+    record["report"] = {**record.get("report", {}), **about}
+    with tempfile.TemporaryDirectory() as folder:
+        content = pathlib.Path(folder, "results.json")
+        content.write_text(json.dumps(record), encoding="utf-8")
+        arguments = [] if template is None else ["--template", os.fspath(template)]
+        try:
+            command._run([*arguments, "-o", os.fspath(file), str(content)])
+        except command.Failure as failure:
+            kinds = {command.USAGE: UsageError, command.INPUT: InputError, command.OUTPUT: OutputError}
+            raise kinds[failure.code](str(failure).replace("\n", " ")) from None
+
+
+def _record(results: list[Results], target: str) -> dict[str, Any]:
+    measured = [each for each in results if isinstance(each, Illuminance)]
+    if not measured:
+        raise UsageError("results: glare and daylight stand beside what photile.measure returned; give that, too")
+    run = measured[0]._run
+    if any(each._run is not run for each in measured):
+        raise UsageError("results: these illuminances are of several calls; measure a list of grids")
+    scene = run.scene
+    ratings = [(float(rating), float(error), name) for each in results if isinstance(each, Glare)
+               for rating, error, name in zip(each.ugr, each.ugr_error, each.names) if np.isfinite(rating)]
+    ugr, error, name = max(ratings, default=(np.nan, np.nan, ""), key=lambda rating: rating[0])
+    ground, sky = scene._sky
+    stated = scene._north != 0 or ground is not None or any(each.grid.role == "wall" for each in measured)
+    record = run.core.record({
+        "target": target,
+        "ugr": (name, ugr, error) if ratings else None,
+        "ground": ground,
+        "sky": list(sky),
+        "north": scene._north if stated else None,
+        "inside": measured[0].grid._inside,
+    })
+    if "direct light alone" in record.get("target", {}).get("reference", ""):
+        raise UsageError(f"target {target}: it is about direct light alone; use photile measure --target {target}")
+    return record
+
+
+def _included(results: list[Results]) -> list[dict[str, Any]]:
+    years = [each.figures for each in results if isinstance(each, Daylight)]
+    contents = [each._content for each in results if isinstance(each, Glare)]
+    return [{"file": "results", "content": content} for content in [*contents, *([years] if years else [])]]
+
+
+def _logo(file: str) -> str:
+    try:
+        picture = pathlib.Path(file).read_bytes()
+    except OSError as error:
+        raise InputError(f"{file}: {error.strerror}") from None
+    kinds = {b"\x89PNG": "png", b"\xff\xd8": "jpeg"}
+    kind = next((kind for head, kind in kinds.items() if picture.startswith(head)), None)
+    if kind is None:
+        raise InputError(f"{file}: a logo is a PNG or a JPEG; save it as one")
+    return f"data:image/{kind};base64,{base64.b64encode(picture).decode()}"
