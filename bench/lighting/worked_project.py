@@ -104,7 +104,7 @@ STEPS = (
          {"report-1.png": "The first page of report.pdf"}, ("target", *FIGURES)),
     Step("All targets are met. The first page has lines for signatures. Each grid has a page with its figures and "
          "a plan to scale with furniture, luminaires and isolines. Maps of glare and of the year follow:",
-         pictures={"report-3.png": "The desks, to scale", "report-12.png": "UGR, daylight autonomy and useful daylight"}),
+         pictures={"report-4.png": "The desks, to scale", "report-17.png": "Maps of the daylight of the year"}),
     Step("The last pages have the luminaire schedule, the parts list, reflectances, data sheets, and the settings "
          "with seed, version and date that reproduce the figures."),
 )

@@ -96,17 +96,22 @@ def _record(results: list[Results], target: str) -> dict[str, Any]:
     scene = run.scene
     ratings = [(float(rating), float(error), name) for each in results if isinstance(each, Glare)
                for rating, error, name in zip(each.ugr, each.ugr_error, each.names) if np.isfinite(rating)]
-    ugr, error, name = max(ratings, default=(np.nan, np.nan, ""), key=lambda rating: rating[0])
+    ugr, error, observer = max(ratings, default=(np.nan, np.nan, ""), key=lambda rating: rating[0])
     ground, sky = scene._sky
     stated = scene._north != 0 or ground is not None or any(each.grid.role == "wall" for each in measured)
     record = run.core.record({
         "target": target,
-        "ugr": (name, ugr, error) if ratings else None,
+        "ugr": (observer, ugr, error) if ratings else None,
         "ground": ground,
         "sky": list(sky),
         "north": scene._north if stated else None,
         "inside": measured[0].grid._inside,
     })
+    # Photometric files of a list have absolute names, which tell a reader nothing.
+    for entry, name in [*((lamp, "file") for lamp in record["luminaires"]),
+                        *((lamp, "name") for lamp in record["photometry"])]:
+        if os.path.isabs(entry[name]):
+            entry[name] = os.path.basename(entry[name])
     if "direct light alone" in record.get("target", {}).get("reference", ""):
         raise UsageError(f"target {target}: it is about direct light alone; use photile measure --target {target}")
     return record

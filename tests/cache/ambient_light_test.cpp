@@ -20,9 +20,8 @@ struct LitSpace {
         maps(rays, quiet_parameters(0.25, 1), source) {
     maps.fill(points_on(scene, 40), Progress::none());
     std::vector<glm::vec4> of_nodes;
-    for (const glm::vec3& irradiance : maps.values().irradiance) {
+    for (const glm::vec3& irradiance : maps.values().irradiance)
       of_nodes.emplace_back(irradiance, 0.0f);
-    }
     REQUIRE(of_nodes.size() > 100);
     ambient.gather(maps, scene, of_nodes);
   }

@@ -108,9 +108,8 @@ inline float read(const cache::LightMaps& maps, const glm::vec3& position,
 
 inline std::vector<float> read_all(const cache::LightMaps& maps, const PrimaryHits& hits) {
   std::vector<float> values;
-  for (std::size_t i = 0; i < hits.size(); ++i) {
+  for (std::size_t i = 0; i < hits.size(); ++i)
     values.push_back(read(maps, hits.position[i], hits.oriented_face[i]));
-  }
   return values;
 }
 

@@ -26,25 +26,16 @@ ROOM = SOURCE / "scenes/living-room/living-room.gltf"
 SKIPPED = 77
 
 # More ranks than cores, as root in a container, without a network: for OpenMPI. Others do not look.
-SETTINGS = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "OMPI_MCA_hwloc_base_binding_policy": "none",
-    "OMPI_MCA_btl": "self,vader",
-    "OMPI_MCA_plm": "isolated",
-}
+SETTINGS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+            "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_hwloc_base_binding_policy": "none",
+            "OMPI_MCA_btl": "self,vader", "OMPI_MCA_plm": "isolated"}
 
 photile, mpiexec = sys.argv[1], sys.argv[2]
 
 
-def fail(text):
-    sys.exit(f"mpi_test.py: error: {text}")
-
-
 def check(condition, text):
     if not condition:
-        fail(text)
+        sys.exit(f"mpi_test.py: error: {text}")
 
 
 def command(ranks, arguments):
@@ -53,9 +44,13 @@ def command(ranks, arguments):
     return start + [photile] + [str(argument) for argument in arguments]
 
 
+def launch(words, **more):
+    return subprocess.run([str(word) for word in words], env=os.environ | SETTINGS, text=True, capture_output=True,
+                          check=False, **more)
+
+
 def run(ranks, arguments):
-    return subprocess.run(command(ranks, arguments), env=os.environ | SETTINGS, text=True,
-                          capture_output=True, check=False)
+    return launch(command(ranks, arguments))
 
 
 def run_whole(ranks, arguments):
@@ -78,7 +73,7 @@ def picture_of(folder, ranks, arguments, scene=BOX):
 
 
 def same_pictures(ranks, arguments, scene=BOX, by=0):
-    """All the same as those of `by` ranks; returns these."""
+    """All the same as those of `by` ranks."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         names, expected = picture_of(folder, by, arguments, scene)
@@ -90,7 +85,6 @@ def same_pictures(ranks, arguments, scene=BOX, by=0):
             check(differing.size == 0,
                   f"{count} ranks: {len(differing)} values differ, the first at {differing[:1]}: "
                   f"{found[found != expected][:1]} is not {expected[found != expected][:1]}")
-    return expected
 
 
 SMALL = ["--photons", "20k", "--size", "32x24", "--samples", "2", "--seed", "3"]
@@ -114,8 +108,14 @@ def measure():
             check(readings(count, folder) == expected, f"{count} ranks read other values")
 
 
-def error_lines(done):
-    return [line for line in done.stderr.splitlines() if line.startswith("photile: error: ")]
+def error_lines(told):
+    return [line for line in told.splitlines() if line.startswith("photile: error: ")]
+
+
+def check_kept(picture, what):
+    """The picture, which held "old", is as it was, and alone in its folder."""
+    check(picture.read_text() == "old", f"{what}: the picture is not what it was")
+    check(os.listdir(picture.parent) == [picture.name], f"{what}: left {os.listdir(picture.parent)}")
 
 
 def errors():
@@ -134,18 +134,17 @@ def errors():
                 (["trace", BOX, "-o", folder / "photons"], 2, "photile trace"),
                 (["render", folder / "none.gltf", "-o", picture], 3, "none.gltf")]:
             done = run(3, arguments)
-            lines = error_lines(done)
+            lines = error_lines(done.stderr)
             check(done.returncode == code, f"{arguments} ended with {done.returncode}: {done.stderr}")
             check(len(lines) == 1 and words in lines[0], f"{arguments}: {lines}")
-            check(picture.read_text() == "old", f"{arguments} changed the picture")
-            check(os.listdir(folder) == ["old.exr"], f"{arguments} left {os.listdir(folder)}")
+            check_kept(picture, arguments)
         # Where one rank alone fails, the others do not wait for it.
         alone = "test $OMPI_COMM_WORLD_RANK = 1 && set -- \"$@\" --device nobody; exec \"$0\" \"$@\""
-        done = subprocess.run([mpiexec, "-n", "3", "sh", "-c", alone, photile, *map(str, render)],
-                              env=os.environ | SETTINGS, text=True, capture_output=True, timeout=60, check=False)
-        check(done.returncode == 4 and len(error_lines(done)) == 1 and "nobody" in error_lines(done)[0],
+        done = launch([mpiexec, "-n", 3, "sh", "-c", alone, photile, *render], timeout=60)
+        lines = error_lines(done.stderr)
+        check(done.returncode == 4 and len(lines) == 1 and "nobody" in lines[0],
               f"a rank without a device: {done.returncode}, {done.stderr}")
-        check(picture.read_text() == "old", "a rank without a device changed the picture")
+        check_kept(picture, "a rank without a device")
 
 
 def ranks():
@@ -210,19 +209,18 @@ def different():
     runs += [(runs[0][0], [*runs[0][0], *more]) for more in (["--errors", "e.exr"], ["--glare", "g.png"])]
     for first, other in runs:
         with tempfile.TemporaryDirectory() as name:
-            both = [mpiexec, "-n", "1", photile, *first, ":", "-n", "1", photile, *other]
-            done = subprocess.run([str(word) for word in both], env=os.environ | SETTINGS, text=True, cwd=name,
-                                  capture_output=True, check=False, timeout=120)
+            both = [mpiexec, "-n", 1, photile, *first, ":", "-n", 1, photile, *other]
+            done = launch(both, cwd=name, timeout=120)
             check(done.returncode == 2, f"{other}: ended with {done.returncode}: {done.stderr}")
-            check("ranks 1 and 0" in done.stderr and len(error_lines(done)) == 1, f"{other}: {done.stderr}")
+            check("ranks 1 and 0" in done.stderr and len(error_lines(done.stderr)) == 1, f"{other}: {done.stderr}")
             check(os.listdir(name) == [], f"{other}: left {os.listdir(name)}")
     with tempfile.TemporaryDirectory() as name:  # files of one name that differ
         for folder, scene in (("0", BOX), ("1", ROOM)):
             shutil.copytree(scene.parent, f"{name}/{folder}")
             os.rename(f"{name}/{folder}/{scene.name}", f"{name}/{folder}/a.gltf")
         own = "cd $OMPI_COMM_WORLD_RANK && exec \"$0\" \"$@\""
-        words = [mpiexec, "-n", "2", "sh", "-c", own, photile, "render", "a.gltf", "-o", "mixed.exr", *room]
-        done = subprocess.run(words, env=os.environ | SETTINGS, text=True, cwd=name, capture_output=True, check=False)
+        render = ["render", "a.gltf", "-o", "mixed.exr", *room]
+        done = launch([mpiexec, "-n", 2, "sh", "-c", own, photile, *render], cwd=name)
         check(done.returncode == 2 and "differ in their scene" in done.stderr, f"{done.returncode}: {done.stderr}")
 
 
@@ -231,74 +229,60 @@ def children_of(process):
     return [int(line) for line in listed.stdout.split()]
 
 
+def disturbed(picture, arguments, disturb, **settings):
+    """Three ranks write a picture over an old one, until `disturb` gets the job and the numbers of their processes. The
+    exit code, the lines of errors and all that they said, once none of them is left."""
+    picture.write_text("old")
+    job = subprocess.Popen(command(3, ["render", BOX, "-o", picture, "--set", "passes=1", *arguments]), text=True,
+                           env=os.environ | SETTINGS | settings, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    while len(children_of(job.pid)) < 3:
+        time.sleep(0.05)
+    time.sleep(1)
+    ranks_of_job = children_of(job.pid)
+    disturb(job, ranks_of_job)
+    _, told = job.communicate(timeout=60)
+    patience = time.time() + 10
+    while any(pathlib.Path(f"/proc/{rank}").exists() for rank in ranks_of_job):
+        check(time.time() < patience, f"ranks are left: {told}")
+        time.sleep(0.1)
+    return job.returncode, error_lines(told), told
+
+
 def signals():
     """SIGTERM ends all with one line; so does the death of a rank, and what was there stays whole."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        picture = folder / "old.exr"
-        picture.write_text("old")
-        arguments = ["render", BOX, "-o", picture, "--photons", "100M", "--set", "passes=1"]
-        for what in ("job", "rank", "killed rank"):
-            job = subprocess.Popen(command(3, arguments), env=os.environ | SETTINGS, text=True,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-            while len(children_of(job.pid)) < 3:
-                time.sleep(0.05)
-            time.sleep(1)
-            ranks_of_job = children_of(job.pid)
-            if what == "job":
-                job.terminate()
-            else:
-                os.kill(ranks_of_job[1], signal.SIGTERM if what == "rank" else signal.SIGKILL)
-            _, told = job.communicate(timeout=60)
-            check(job.returncode != 0, f"{what}: the job ended well")
-            lines = [line for line in told.splitlines() if line.startswith("photile: error: ")]
+    for what, disturb in (("job", lambda job, _: job.terminate()),
+                          ("rank", lambda _, ranks_of_job: os.kill(ranks_of_job[1], signal.SIGTERM)),
+                          ("killed rank", lambda _, ranks_of_job: os.kill(ranks_of_job[1], signal.SIGKILL))):
+        with tempfile.TemporaryDirectory() as name:
+            picture = pathlib.Path(name) / "old.exr"
+            code, lines, told = disturbed(picture, ["--photons", "100M"], disturb)
+            check(code != 0, f"{what}: the job ended well")
             check(len(lines) <= 1 and all("interrupted" in line for line in lines), f"{what}: {lines}")
             check(what == "killed rank" or len(lines) == 1, f"{what}: no line tells: {told}")
-            patience = time.time() + 10
-            while any(pathlib.Path(f"/proc/{rank}").exists() for rank in ranks_of_job):
-                check(time.time() < patience, f"{what}: ranks are left")
-                time.sleep(0.1)
-            check(picture.read_text() == "old", f"{what}: the picture is not what it was")
-            check(os.listdir(folder) == ["old.exr"], f"{what}: left {os.listdir(folder)}")
+            check_kept(picture, what)
 
 
 def stopped():
     """A rank that is stopped ends all with a line that names it; where all are, for a while, none was silent."""
-    patience = {"PHOTILE_MPI_PATIENCE": "3"}
-    for all_of_them in (False, True):
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            picture = folder / "old.exr"
-            picture.write_text("old")
-            paths = "1M" if all_of_them else "100M"
-            job = subprocess.Popen(command(3, ["render", BOX, "-o", picture, "--photons", paths, "--set", "passes=1",
-                                               "--quality", "draft", "-q"]),
-                                   env=os.environ | SETTINGS | patience, text=True, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE)
-            while len(children_of(job.pid)) < 3:
-                time.sleep(0.05)
-            time.sleep(1)
-            ranks_of_job = children_of(job.pid)
-            to_stop = ranks_of_job if all_of_them else ranks_of_job[1:2]
-            for rank in to_stop:
-                os.kill(rank, signal.SIGSTOP)
-            if all_of_them:
-                time.sleep(8)
-                for rank in to_stop:
-                    os.kill(rank, signal.SIGCONT)
-            _, told = job.communicate(timeout=60)
-            lines = [line for line in told.splitlines() if line.startswith("photile: error: ")]
-            if all_of_them:
-                check(job.returncode == 0 and lines == [], f"all were stopped: {job.returncode}, {told}")
-                check(picture.stat().st_size > 100, "no picture was written")
-                continue
-            number = [rank for rank in range(3) if f"rank {rank} of 3 has not answered" in told]
-            check(job.returncode != 0 and len(lines) == 1 and len(number) == 1, f"{job.returncode}, {told}")
-            check(picture.read_text() == "old", "the picture is not what it was")
-            left = time.time() + 10
-            while any(pathlib.Path(f"/proc/{rank}").exists() for rank in ranks_of_job):
-                check(time.time() < left, "ranks are left")
-                time.sleep(0.1)
+    def stop_one(_, ranks_of_job):
+        os.kill(ranks_of_job[1], signal.SIGSTOP)
+
+    def stop_all(_, ranks_of_job):
+        for sent, seconds in ((signal.SIGSTOP, 8), (signal.SIGCONT, 0)):
+            for rank in ranks_of_job:
+                os.kill(rank, sent)
+            time.sleep(seconds)
+
+    with tempfile.TemporaryDirectory() as name:
+        picture = pathlib.Path(name) / "old.exr"
+        made = ["--quality", "draft", "-q", "--photons"]
+        code, lines, told = disturbed(picture, [*made, "100M"], stop_one, PHOTILE_MPI_PATIENCE="3")
+        number = [rank for rank in range(3) if f"rank {rank} of 3 has not answered" in told]
+        check(code != 0 and len(lines) == 1 and len(number) == 1, f"{code}, {told}")
+        check_kept(picture, "a rank was stopped")
+        code, lines, told = disturbed(picture, [*made, "1M"], stop_all, PHOTILE_MPI_PATIENCE="3")
+        check(code == 0 and lines == [], f"all were stopped: {code}, {told}")
+        check(picture.stat().st_size > 100, "no picture was written")
 
 
 def network():
@@ -308,9 +292,8 @@ def network():
         folder = pathlib.Path(name)
         _, expected = picture_of(folder, 0, arguments)
         file = folder / "network.exr"
-        done = subprocess.run([sys.executable, str(SOURCE / "tests/cluster/lossy_network.py"), "--delay", "2", "--loss",
-                               "1", "--ranks", "3", "--", mpiexec, photile, "render", str(BOX), "-o", str(file),
-                               *arguments], text=True, capture_output=True, check=False)
+        done = launch([sys.executable, SOURCE / "tests/cluster/lossy_network.py", "--delay", 2, "--loss", 1,
+                       "--ranks", 3, "--", mpiexec, photile, "render", BOX, "-o", file, *arguments])
         print(done.stdout, done.stderr)
         if done.returncode == SKIPPED:
             sys.exit(SKIPPED)

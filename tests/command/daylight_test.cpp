@@ -46,7 +46,7 @@ TEST_CASE("a year of daylight fills its files") {
   CHECK_THAT(folder.read("a-1.svg"), Contains("working plane: DA 300 lux"));
   CHECK_THAT(folder.read("a-2.svg"), Contains("working plane: UDI 100 to 3000 lux"));
   CHECK_THAT(folder.read("a.html"),
-             Contains("A year of daylight: open.obj") && Contains("<h2>working plane</h2>") &&
+             Contains("A year of daylight: open.obj") && Contains("Maps: working plane</h2>") &&
                  Contains("DA 300 lux") && Contains("year.epw") && !Contains("Key figures"));
   CHECK_THAT(outcome.output, Contains("sDA 300") && Contains("ASE") && Contains("UDI") &&
                                  Contains("EN 17037") && Contains("kWh"));

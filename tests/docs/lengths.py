@@ -27,11 +27,6 @@ def faults(docs):
                 if page.name != "README.md")
 
 
-def main():
-    found = list(faults(pathlib.Path(sys.argv[1]).resolve() / "docs"))
-    print("\n".join(found) or "no page is too long")
-    sys.exit(bool(found))
-
-
-if __name__ == "__main__":
-    main()
+found = list(faults(pathlib.Path(sys.argv[1]).resolve() / "docs"))
+print("\n".join(found) or "no page is too long")
+sys.exit(bool(found))

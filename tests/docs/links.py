@@ -70,12 +70,7 @@ def mentions(source):
                 yield f"{file.relative_to(source)}: {page}: no such page"
 
 
-def main():
-    source = pathlib.Path(sys.argv[1]).resolve()
-    found = [*faults(source), *mentions(source)]
-    print("\n".join(found) or "all links lead somewhere")
-    sys.exit(bool(found))
-
-
-if __name__ == "__main__":
-    main()
+folder = pathlib.Path(sys.argv[1]).resolve()
+wrong = [*faults(folder), *mentions(folder)]
+print("\n".join(wrong) or "all links lead somewhere")
+sys.exit(bool(wrong))

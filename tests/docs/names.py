@@ -64,11 +64,6 @@ def faults(source):
                     yield f"{file}:{line + text.count(chr(10), 0, found.start())}: '{found.group()}' does not exist"
 
 
-def main():
-    found = list(faults(pathlib.Path(sys.argv[1])))
-    print("\n".join(found))
-    return 1 if found else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+found = list(faults(pathlib.Path(sys.argv[1])))
+print("\n".join(found))
+sys.exit(bool(found))

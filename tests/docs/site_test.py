@@ -65,5 +65,4 @@ def main():
     sys.exit(bool(found))
 
 
-if __name__ == "__main__":
-    main()
+main()

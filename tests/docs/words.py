@@ -54,7 +54,6 @@ NAMES = {
 # Names that mean what these words mean in the field.
 NAMED_SO = {"look_at", "two_sided", "in_place", "place_camera", "contact_sheet_width", "lamp_efficacy",
             "LineOfSight"}
-PRIVATE = re.compile(r"\b(" + "|".join(f"(?:{word})" for word in WORDS) + r")\b", re.IGNORECASE)
 QUOTED = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 
 
@@ -95,25 +94,16 @@ def private_names(source):
                         yield f"{file.relative_to(source)}:{number}: '{name}'; say {said}"
 
 
-def field_word(private):
-    return next(field for word, field in WORDS.items() if re.fullmatch(word, private, re.IGNORECASE))
-
-
 def faults(source):
-    files = [source / "README.md", *sorted((source / "docs").rglob("*.md"))]
-    files += sorted((source / "host").rglob("*.cpp"))
-    for file in files:
+    pages, programs = sorted((source / "docs").rglob("*.md")), sorted((source / "host").rglob("*.cpp"))
+    for file in [source / "README.md", *pages, *programs]:
         for number, line in sentences(file):
-            for found in PRIVATE.findall(line):
-                yield f"{file.relative_to(source)}:{number}: '{found}'; say {field_word(found)}"
+            for word, field in WORDS.items():
+                for found in re.finditer(rf"\b(?:{word})\b", line, re.IGNORECASE):
+                    yield f"{file.relative_to(source)}:{number}: '{found.group()}'; say {field}"
     yield from private_names(source)
 
 
-def main():
-    found = list(faults(pathlib.Path(sys.argv[1])))
-    print("\n".join(found))
-    return 1 if found else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+found = list(faults(pathlib.Path(sys.argv[1])))
+print("\n".join(found))
+sys.exit(bool(found))

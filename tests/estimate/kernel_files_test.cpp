@@ -58,9 +58,8 @@ using estimate::Specialisation;
 
 std::vector<EstimateTuning> all_tunings() {
   std::vector<EstimateTuning> tunings;
-  for (const int width : estimate::vector_widths) {
+  for (const int width : estimate::vector_widths)
     tunings.push_back({.strategy = EstimateStrategy::select, .vector_width = width});
-  }
   for (const int width : estimate::lane_widths) {
     tunings.push_back({.strategy = EstimateStrategy::lanes, .vector_width = width});
   }

@@ -96,9 +96,8 @@ TileMeans rendered(const Golden& golden) {
   }
   const Scene scene = load_scene(source_folder() / "scenes" / golden.scene, options);
   std::vector<Pixels> seeds;
-  for (std::uint64_t seed = 1; seed <= golden_seeds; ++seed) {
+  for (std::uint64_t seed = 1; seed <= golden_seeds; ++seed)
     seeds.push_back(picture_of(scene, golden.method, seed));
-  }
   return tile_means(golden.name(), seeds, width, tile_side);
 }
 

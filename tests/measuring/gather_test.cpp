@@ -53,9 +53,8 @@ TEST_CASE("a point light gives I cos / d^2 in the air, on planes of any tilt") {
   builder.add(test::point_light("lamp", glm::vec3(lamp)));
   const Scene scene = builder.build();
   std::vector<Sensor> sensors;
-  for (const double tilt : {0.0, 0.4, 1.1, 2.0}) {
+  for (const double tilt : {0.0, 0.4, 1.1, 2.0})
     sensors.push_back({{0.7, 0.4, 0.75}, {std::sin(tilt), 0, std::cos(tilt)}});
-  }
   const auto layers = gather_by_paths(scene, sensors, {.rays = 4}, 1).layers;
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     const glm::dvec3 way = lamp - sensors[i].position;

@@ -250,9 +250,8 @@ TEST_CASE("readings of neighbouring seeds differ as their standard errors say") 
   const auto mean_of = [&](std::uint64_t seed) {
     const Readings readings = measured(scene, seed, repeats);
     std::vector<std::vector<float>> values;
-    for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
+    for (std::size_t repeat = 0; repeat < repeats; ++repeat)
       values.push_back(readings.total(repeat));
-    }
     return means_of(values)[0];
   };
   for (std::uint64_t pair = 0; pair < pairs; ++pair) {

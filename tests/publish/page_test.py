@@ -26,6 +26,7 @@ except ImportError as error:
     print(f"skipped: {error}; apt-get install python3-numpy python3-openimageio python3-selenium")
     sys.exit(77)
 
+PHOTILE, SOURCE = sys.argv[2], pathlib.Path(sys.argv[3])
 CHROMIUM, DRIVER = "/usr/bin/chromium", "/usr/bin/chromedriver"
 SIZE = (320, 200)  # pixels of the page and of pictures
 
@@ -47,8 +48,8 @@ page.frame = (time) => {
   frame(time);
 };
 """
-KEY_CODES = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Escape": 27, "Tab": 9, "Delete": 46,
-             "Shift": 16, "F2": 113, "[": 219, "]": 221, "PageDown": 34}
+KEY_CODES = {"ArrowLeft": 37, "ArrowRight": 39, "Escape": 27, "Delete": 46, "F2": 113, "PageDown": 34, "{": 219,
+             "]": 221}
 
 BASE64 = """
 const base64 = (array) => {
@@ -57,6 +58,12 @@ const base64 = (array) => {
   for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
   return btoa(text);
 };
+"""
+# What the canvas shows, rows from below.
+SHOWN = BASE64 + """
+page.renderer.draw(page.walker);
+const {gl, canvas: {width, height}} = page.renderer, shown = new Uint8Array(4 * width * height);
+gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, shown);
 """
 # Paints all that is not matt black, lamps included, and leaves reflections out, and back: pixels that do
 # not change see matt surfaces alone. Normal maps, which a page leaves out, count as not matt.
@@ -129,19 +136,24 @@ class Browser:
         self.run_command("Network.emulateNetworkConditions",
                          {"offline": True, "latency": 0, "downloadThroughput": 0, "uploadThroughput": 0})
 
-    def open(self, file, state=""):
+    def open(self, url, state=""):
         self.driver.get("about:blank")
-        self.driver.get(file.as_uri() + (f"#{state}" if state else ""))
-        for _ in range(600):
-            if not self.run("return document.getElementById('loading')"):
-                self.run(COUNT_FRAMES)
-                return
-            time.sleep(0.1)
-        raise AssertionError("the page did not open: " +
-                             self.run("return document.getElementById('loading').textContent"))
+        self.driver.get(url + (f"#{state}" if state else ""))
+        self.until("return document.getElementById('loading') === null")
+        self.run(COUNT_FRAMES)
 
     def run(self, script, *arguments):
         return self.driver.execute_script(script, *arguments)
+
+    def until(self, script, *arguments, seconds=90):
+        """What the script returns once that is true."""
+        for _ in range(20 * seconds):
+            value = self.run(script, *arguments)
+            if value:
+                return value
+            time.sleep(0.05)
+        loading = self.run("return document.getElementById('loading')?.textContent")
+        raise AssertionError(f"never: {script}, of {arguments}" + (f"; the page says: {loading}" if loading else ""))
 
     def radiance(self, samples=4, mode=1):
         """Of each pixel; of mode 2 what V's colours stand for."""
@@ -150,9 +162,10 @@ class Browser:
                         *SIZE, samples, mode)
         return np.frombuffer(base64.b64decode(text), np.float32).reshape(SIZE[1], SIZE[0], 3)
 
-    def hold(self, key, seconds, code=None, modifiers=0):
-        """Holds a key down; `code` is its place on the keyboard, where that is not its name."""
-        event = {"key": key, "code": code or key, "windowsVirtualKeyCode": KEY_CODES.get(key, ord(key[0].upper())),
+    def hold(self, key, seconds, modifiers=0, code=None):
+        """Holds a key down; `code` is its place on the keyboard, where that is not a letter, a digit or its name."""
+        code = code or (key if len(key) > 1 else f"Digit{key}" if key.isdigit() else f"Key{key.upper()}")
+        event = {"key": key, "code": code, "windowsVirtualKeyCode": KEY_CODES.get(key, ord(key[0].upper())),
                  "modifiers": modifiers}
         if len(key) == 1 and not modifiers:
             event["text"] = key
@@ -167,54 +180,85 @@ class Browser:
         """For so long, and for five frames at least: a busy machine may draw few."""
         first = self.run("return page.frames")
         time.sleep(seconds)
-        for _ in range(600):
-            if self.run("return page.frames") >= first + 5:
-                return
+        self.until("return page.frames >= arguments[0]", first + 5)
+
+    def press(self, key, modifiers=0, code=None):
+        self.hold(key, 0, modifiers, code)
+
+    def drag(self, *points, button="left"):
+        """Presses a button at the first of these points of the page, and lets it go at the last."""
+        kinds = ["Pressed", *["Moved"] * (len(points) - 1), "Released"]
+        for kind, (x, y) in zip(kinds, [*points, points[-1]]):
+            self.run_command("Input.dispatchMouseEvent",
+                             {"type": f"mouse{kind}", "x": x, "y": y, "button": button, "clickCount": 1,
+                              "buttons": 0 if kind == "Released" else {"left": 1, "right": 2}[button]})
             time.sleep(0.05)
-        raise AssertionError("the page draws no frames")
 
-    def press(self, key):
-        self.hold(key, 0, f"Digit{key}" if key.isdigit() else f"Key{key.upper()}" if len(key) == 1 else key)
-
-    def mouse(self, kind, x, y, **more):
-        self.run_command("Input.dispatchMouseEvent",
-                         {"type": f"mouse{kind}", "x": x, "y": y, "button": "left", "clickCount": 1, **more})
+    def click(self, x, y):
+        self.drag((x, y))
 
     def turn_wheel(self, **more):
         self.run_command("Input.dispatchMouseEvent",
                          {"type": "mouseWheel", "x": 100, "y": 100, "deltaX": 0, "deltaY": -100, **more})
         self.rest()
 
-    def touch(self, kind, *points):
-        self.run_command("Input.dispatchTouchEvent",
-                         {"type": f"touch{kind}",
-                          "touchPoints": [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]})
+    def touch(self, *steps, seconds=0):
+        """Fingers at the points of each step, which they hold for so long in the end."""
+        for kind, points in [*zip(("Start", "Move"), steps), ("End", [])]:
+            if kind == "End" and seconds:
+                self.wait(seconds)
+            self.run_command("Input.dispatchTouchEvent",
+                             {"type": f"touch{kind}",
+                              "touchPoints": [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]})
+        self.rest()
 
     def rest(self):
         """Waits until nothing moves any more."""
         time.sleep(0.1)
-        for _ in range(1500):
-            if not self.run("return page.scheduled"):
-                return
-            time.sleep(0.02)
-        raise AssertionError("the page does not come to rest")
+        self.until("return !page.scheduled")
 
     def viewer(self):
         return self.run("const {eye, yaw, pitch, angle, flies} = page.walker; return {eye, yaw, pitch, angle, flies}")
 
-    def messages(self):
-        return [entry["message"] for entry in self.driver.get_log("browser")]
+    def pose(self):
+        viewer = self.viewer()
+        return [*viewer["eye"], viewer["yaw"], viewer["pitch"]]
+
+    def shown(self):
+        """8 bits of red, green and blue of each pixel of the canvas."""
+        return pixels_of(self.run(SHOWN + "return base64(shown);"), np.uint8).astype(float)
+
+    def choose_preset(self, name=None):
+        """By its button: the first is of the lamps as they were published."""
+        self.run("[...document.querySelectorAll('#presets button')].find((button, i) => "
+                 "arguments[0] === null ? i === 0 : button.textContent === arguments[0]).click();"
+                 "page.frame(performance.now())", name)
+
+    def saved(self, folder, pattern, save):
+        """The file of such a name that `save` makes the page save."""
+        for old in folder.glob(pattern):
+            old.unlink()
+        self.run_command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
+        save()
+        for _ in range(600):
+            for file in folder.glob(pattern):
+                if file.stat().st_size > 0:
+                    time.sleep(0.2)
+                    return file
+            time.sleep(0.05)
+        raise AssertionError(f"{pattern} was not saved")
 
 
-def channels_of(file, requested):
+def pixels_of(text, kind):
+    """Red, green and blue of the page's pixels, which a script read from below."""
+    return np.frombuffer(base64.b64decode(text), kind).reshape(SIZE[1], SIZE[0], 4)[::-1, :, :3]
+
+
+def channels_of(file, requested="RGB"):
     picture = oiio.ImageInput.open(str(file))
     names = picture.spec().channelnames
     channels = [names.index(channel) for channel in requested]
     return np.asarray(picture.read_image(format=oiio.FLOAT))[:, :, channels].astype(float)
-
-
-def radiance_of(file):
-    return channels_of(file, "RGB")
 
 
 def compare_pixels(what, page, reference, counted):
@@ -314,11 +358,10 @@ def check_views(browser, folder, scene, bumpy, dimmed, mood, lights=()):
     """
     page = folder / "page.html"
     photile("publish", scene, "-o", page, "-q", *lights)
-    browser.open(page)
-    pictures = []
-    for camera in range(3):
-        pictures.append(folder / f"view{camera}.exr")
-        photile("render", scene, "--camera", camera, "-o", pictures[-1], "-q", "--size", "%dx%d" % SIZE, *lights)
+    browser.open(page.as_uri())
+    pictures = [folder / f"view{camera}.exr" for camera in range(3)]
+    for camera, picture in enumerate(pictures):
+        photile("render", scene, "--camera", camera, "-o", picture, "-q", "--size", "%dx%d" % SIZE, *lights)
 
     def compare_views(what, relit=()):
         for camera, picture in enumerate(pictures):
@@ -327,18 +370,17 @@ def check_views(browser, folder, scene, bumpy, dimmed, mood, lights=()):
                 shown = folder / "relit.exr"
                 photile("relight", picture, *relit, "-o", shown)
             browser.run("page.walker.stand(room.cameras[arguments[0]])", camera)
-            compare(f"{what}, view {camera}", browser, radiance_of(shown), bumpy)
+            compare(f"{what}, view {camera}", browser, channels_of(shown), bumpy)
 
     compare_views("as published")
     for name, factor in dimmed.items():
         browser.run(SET_POWER, name, factor)
     compare_views("dimmed", [part for name, factor in dimmed.items() for part in ("--light", f"{name}=x{factor}")])
-    browser.run("[...document.querySelectorAll('#presets button')].find((b) => b.textContent === arguments[0]).click();"
-                "page.frame(performance.now())", mood)
+    browser.choose_preset(mood)
     compare_views("by a preset", ["--mood", mood, "--moods", scene.with_suffix(".moods.json")])
-    browser.run("document.querySelector('#presets button').click(); page.frame(performance.now());"
-                "page.walker.stand(room.cameras[0])")
-    return page, pictures
+    browser.choose_preset()
+    browser.run("page.walker.stand(room.cameras[0])")
+    return pictures
 
 
 CORNELL_VIEWS = [((0.1, 0.42, -0.3), (0.35, 0.15, 0.35)), ((0.47, 0.5, 0.03), (0.2, 0.0, 0.4))]
@@ -349,7 +391,7 @@ CORNELL_MOOD = {"evening": {"lamp": {"power": 3000, "unit": "lm", "on": True, "k
 def test_cornell_box(browser, folder):
     scene, _ = room_in(folder, "cornell-box", CORNELL_VIEWS, CORNELL_MOOD, [("front", (0.28, 0.54, 0.08))])
     front = ["--area-light", "front=0.2x0.1,1500"]
-    _, pictures = check_views(browser, folder, scene, (), {"lamp": 0.3, "front": 1.6}, "evening", front)
+    pictures = check_views(browser, folder, scene, (), {"lamp": 0.3, "front": 1.6}, "evening", front)
     browser.run(SET_POWER, "front", 0)
     errors = folder / "errors.exr"
     photile("render", scene, "--camera", 0, "-o", folder / "again.exr", "--errors", errors, "-q", "--size",
@@ -424,11 +466,11 @@ def near(value, requested, tolerance):
 
 def check_keyboard(browser):
     browser.run(STAND, MIDDLE, NORTH)
-    browser.hold("w", 0.5, "KeyW")
+    browser.hold("w", 0.5)
     eye = browser.viewer()["eye"]
     assert 0.1 < MIDDLE[2] - eye[2] < 2.2, eye
     near(eye[:2], MIDDLE[:2], 1e-3)
-    browser.hold("w", 4, "KeyW")  # to the wall, which a body as wide as Walker's does not enter
+    browser.hold("w", 4)  # to the wall, which a body as wide as Walker's does not enter
     near(browser.viewer()["eye"], [3, 1.6, 0.22], 0.01)
     walked = browser.run(STAND + """
 const {walker} = page, speed = document.getElementById('speed');
@@ -445,21 +487,20 @@ return arguments[0][2] - walker.eye[2];""", MIDDLE, NORTH)
     browser.hold("ArrowRight", 0.3)
     viewer = browser.viewer()
     assert 0.1 < viewer["yaw"] < 1.5 and viewer["eye"] == MIDDLE, viewer
-    browser.hold("e", 0.3, "KeyE")
+    browser.hold("e", 0.3)
     near(browser.viewer()["eye"][1], 1.9, 0.25)
     browser.run(STAND, MIDDLE, NORTH)
     browser.press("f")
-    browser.hold("e", 0.5, "KeyE")
+    browser.hold("e", 0.5)
     viewer = browser.viewer()
     assert viewer["flies"] and viewer["eye"][1] > 1.8, viewer
     assert browser.run("return document.getElementById('fly').getAttribute('aria-pressed')") == "true"
     browser.press("1")
     near(browser.viewer()["eye"], browser.run("return room.cameras[0].position"), 1e-6)
     browser.press("f")
-    browser.press("F2")
-    assert browser.run("return document.getElementById('panel').hidden")
-    browser.press("F2")
-    assert not browser.run("return document.getElementById('panel').hidden")
+    for hidden in (True, False):
+        browser.press("F2")
+        assert browser.run("return document.getElementById('panel').hidden") == hidden
     browser.press("h")
     assert browser.run("return document.getElementById('about').open")
     text = browser.run("return document.getElementById('frames').textContent")
@@ -480,7 +521,8 @@ return [document.getElementById('frames').textContent, width * height];""", mixe
     browser.press("ArrowLeft")
     assert browser.run("return page.lights.states[0].power < room.lights[0].power")
     assert browser.viewer()["eye"] == MIDDLE
-    browser.run("document.querySelector('#presets button').click(); page.canvas.focus(); page.panel.unfold(false)")
+    browser.choose_preset()
+    browser.run("page.canvas.focus(); page.panel.unfold(false)")
 
 
 def check_orbit(browser):
@@ -489,9 +531,7 @@ def check_orbit(browser):
         browser.run(STAND, MIDDLE, [0.6, 0, -0.8])
         browser.run("page.walker.flies = arguments[0]", flies)
         place = browser.run("return page.meet(160, 100).place")
-        browser.mouse("Pressed", 160, 100, button="right")
-        browser.mouse("Moved", 200, 20, button="right", buttons=2)
-        browser.mouse("Released", 200, 20, button="right")
+        browser.drag((160, 100), (200, 20), button="right")
         browser.rest()
         near(browser.run("return page.meet(160, 100).place"), place, 0.02)
         eye = browser.viewer()["eye"]
@@ -519,19 +559,13 @@ for (let i = 0; i < 3; ++i) {
 page.wake();
 return widths;""")
     assert widths == [224, 157, 110], widths
-    for _ in range(100):
-        if browser.run("return page.canvas.width") == SIZE[0]:
-            break
-        time.sleep(0.1)
-    assert browser.run("return page.canvas.width") == SIZE[0]
+    browser.until("return page.canvas.width === arguments[0]", SIZE[0], seconds=10)
     browser.rest()
 
 
 def check_mouse(browser):
     browser.run(STAND, MIDDLE, NORTH)
-    browser.mouse("Pressed", 150, 100)
-    browser.mouse("Moved", 130, 110)
-    browser.mouse("Released", 130, 110)
+    browser.drag((150, 100), (130, 110))
     browser.rest()
     viewer = browser.viewer()  # what was under the pointer stays there, near the middle
     near([viewer["yaw"], viewer["pitch"]], [20 / SIZE[1], 10 / SIZE[1]], 1e-6)
@@ -539,8 +573,7 @@ def check_mouse(browser):
     near(browser.viewer()["angle"], math.exp(-0.08), 1e-6)
     check_orbit(browser)
     browser.run(STAND, MIDDLE, [0, -0.8, -0.6])
-    for kind in ("Pressed", "Released"):
-        browser.mouse(kind, 160, 100)
+    browser.click(160, 100)
     text = browser.run("return document.getElementById('reading').textContent")
     assert " lx" in text and "±" in text and "left" in text and "right" in text, text
     lux, luminance = (float(line.split()[0].replace(",", "")) for line in text.split("\n")[:2])
@@ -552,20 +585,13 @@ def check_mouse(browser):
 def check_touch(browser):
     browser.run_command("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
     browser.run(STAND, MIDDLE, NORTH)
-    browser.touch("Start", (180, 100))  # beside the pad
-    browser.touch("Move", (220, 100))
-    browser.touch("End")
-    browser.rest()
+    browser.touch([(180, 100)], [(220, 100)])  # beside the pad
     near(browser.viewer()["yaw"], -40 / SIZE[1], 1e-6)
     browser.run(STAND, MIDDLE, NORTH)
-    browser.touch("Start", (180, 80), (220, 80))
-    browser.touch("Move", (180, 120), (220, 120))
-    browser.touch("End")
-    browser.rest()
+    browser.touch([(180, 80), (220, 80)], [(180, 120), (220, 120)])
     near(browser.viewer()["eye"], [3, 1.6, 2.5 - 2 * 40 * 2.5 / SIZE[1]], 1e-3)
     browser.run(STAND, MIDDLE, [0, -0.8, -0.6])
-    browser.touch("Start", (160, 100))
-    browser.touch("End")
+    browser.touch([(160, 100)])
     assert " lx" in browser.run("return document.getElementById('reading').textContent")
     assert not browser.run("return document.getElementById('reading').hidden")
     browser.run("page.points.removeAll(); document.getElementById('pad').style.display = 'block'")
@@ -573,10 +599,7 @@ def check_touch(browser):
 const box = document.getElementById('pad').getBoundingClientRect();
 return [box.left + box.width / 2, box.top + box.height / 2, box.width];""")
     browser.run(STAND, MIDDLE, NORTH)
-    browser.touch("Start", (x + 0.4 * width, y))
-    browser.wait(0.5)
-    browser.touch("End")
-    browser.rest()
+    browser.touch([(x + 0.4 * width, y)], seconds=0.5)
     eye = browser.viewer()["eye"]
     assert eye[0] > 3.2 and abs(eye[2] - 2.5) < 0.1, eye
     browser.run("document.getElementById('pad').style.display = ''")
@@ -603,11 +626,10 @@ def check_link(browser, page):
                 "document.getElementById('link').click()")
     time.sleep(0.2)
     state = browser.run("return location.hash.slice(1)")
-    before = browser.viewer()
+    before = browser.pose()
     browser.open(page, state)
     browser.rest()  # nobody sinks to the knees meanwhile, or rises
-    after = browser.viewer()
-    near(after["eye"] + [after["yaw"], after["pitch"]], before["eye"] + [before["yaw"], before["pitch"]], 1e-4)
+    near(browser.pose(), before, 1e-4)
     power, kelvin, stops = browser.run(
         "return [page.lights.states[0].power / room.lights[0].power, page.lights.states[1].kelvin, page.stops]")
     near([power, kelvin, stops], [0.5, 2700, 1.5], 1e-3)
@@ -622,17 +644,7 @@ def check_link(browser, page):
 
 
 def saved_picture(browser, folder):
-    for old in folder.glob("*.png"):
-        old.unlink()
-    browser.run_command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
-    browser.press("p")
-    for _ in range(100):
-        found = list(folder.glob("*.png"))
-        if found and found[0].stat().st_size > 0:
-            time.sleep(0.2)
-            break
-        time.sleep(0.05)
-    return np.asarray(oiio.ImageInput.open(str(found[0])).read_image(format=oiio.FLOAT))[:, :, :3].astype(float)
+    return channels_of(browser.saved(folder, "*.png", lambda: browser.press("p")))
 
 
 def neutral_srgb(colour):
@@ -729,26 +741,13 @@ return brightest;""")
     assert 0.3 < rough < 1.1 and smooth > 2, (rough, smooth)  # the lamps' mean is not quite white
 
 
-def saved_text(browser, folder, name, button):
-    browser.run_command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
-    browser.run("document.getElementById(arguments[0]).click()", button)
-    for _ in range(100):
-        if (folder / name).exists() and (folder / name).stat().st_size > 0:
-            return (folder / name).read_text()
-        time.sleep(0.05)
-    raise AssertionError(f"{name} was not saved")
-
-
 def check_hours(browser):
     hour = "return [page.lights.hour.day, 60 * room.hours.times[0] + 30 * page.lights.hour.time]"
     day, minutes = browser.run(hour)
-    browser.hold("]", 0, "BracketRight")
-    near(browser.run(hour), [day, minutes + 15], 1e-6)
-    browser.run_command("Input.dispatchKeyEvent", {"type": "rawKeyDown", "key": "{", "code": "BracketLeft",
-                                                   "windowsVirtualKeyCode": 219, "modifiers": 8})
-    near(browser.run(hour), [day, minutes - 45], 1e-6)
-    browser.press("PageDown")
-    near(browser.run(hour), [day + 1, minutes - 45], 1e-6)
+    for key, modifiers, code, moved in (("]", 0, "BracketRight", (0, 15)), ("{", 8, "BracketLeft", (0, -45)),
+                                        ("PageDown", 0, None, (1, -45))):
+        browser.press(key, modifiers, code)
+        near(browser.run(hour), [day + moved[0], minutes + moved[1]], 1e-6)
     # Between the 21sts the sky is mixed, over the end of the year, too; weather is not.
     skies = np.array(browser.run("return [...room.hours.luminances]")).reshape(12, 48, -1)
     dates = np.array([datetime.date(2026, month, 21).timetuple().tm_yday for month in range(1, 13)])
@@ -782,9 +781,8 @@ def check_points(browser, folder, scene, *options):
     browser.run("page.view(0); page.wake()")
     browser.rest()
     places = [(150, 90), (90, 110), (240, 120)]
-    for x, y in places:
-        browser.mouse("Pressed", x, y)
-        browser.mouse("Released", x, y)
+    for place in places:
+        browser.click(*place)
     rings = browser.run("return [...document.querySelectorAll('#rings i')].map((ring) => [ring.textContent, "
                         "parseFloat(ring.style.left), parseFloat(ring.style.top)])")
     assert [ring[0] for ring in rings] == ["1", "2", "3"], rings
@@ -800,13 +798,17 @@ document.getElementById('target').dispatchEvent(new Event('input'));""", 0.9 * f
     first, second = browser.run(rows)
     assert first.startswith("1") and second.startswith("3") and "below" in first, (first, second)
     assert browser.run("return document.querySelectorAll('#rings i').length") == 2
-    table = saved_text(browser, folder, "points.csv", "save-csv").splitlines()
+
+    def saved_points(kind):
+        return browser.saved(folder, f"points.{kind}", lambda: browser.run(
+            "document.getElementById(arguments[0]).click()", f"save-{kind}"))
+
+    table = saved_points("csv").read_text().splitlines()
     assert table[0] == ("point,x,y,z,dx,dy,dz,lux,standard_error,lux left,standard_error left,lux right,"
                         "standard_error right,lux sky,standard_error sky"), table[0]
     points = [list(map(float, line.split(","))) for line in table[1:]]
     near(points[0][7:9], [0.8 * full, 0.8 * error], 0.01 * error)
-    saved_text(browser, folder, "points.pts", "save-pts")
-    photile("measure", scene, "--points", folder / "points.pts", "-o", folder / "points.json", "-q", "--photons", "1M",
+    photile("measure", scene, "--points", saved_points("pts"), "-o", folder / "points.json", "-q", "--photons", "1M",
             *options)
     sensors = json.loads((folder / "points.json").read_text())["grids"][0]["sensors"]
     for point, sensor in zip(points, sensors, strict=True):
@@ -849,20 +851,13 @@ def check_undo(browser):
     x, y, width = browser.run("""
 const box = document.getElementById('light0').getBoundingClientRect();
 return [box.left, box.top + box.height / 2, box.width];""")
-    browser.mouse("Pressed", x + 0.8 * width, y)
-    for share in (0.7, 0.5, 0.3):
-        browser.mouse("Moved", x + share * width, y, buttons=1)
-        time.sleep(0.05)
-    browser.mouse("Released", x + 0.3 * width, y)
+    browser.drag(*((x + share * width, y) for share in (0.8, 0.7, 0.5, 0.3)))
     dimmed = browser.run("return page.lights.states[0].power")
     assert dimmed < 0.5 * start, (dimmed, start)
     browser.run("document.querySelectorAll('.solo')[1].click(); page.canvas.focus()")
 
     def press(key, shift=0):
-        event = {"key": key, "code": f"Key{key.upper()}", "windowsVirtualKeyCode": ord(key.upper()),
-                 "modifiers": 2 + shift}
-        browser.run_command("Input.dispatchKeyEvent", {"type": "rawKeyDown", **event})
-        browser.run_command("Input.dispatchKeyEvent", {"type": "keyUp", **event})
+        browser.press(key, 2 + shift)
         return browser.run("const {lights} = page; return [lights.states[0].power, lights.anySolo, "
                            "document.querySelectorAll('.solo')[1].getAttribute('aria-pressed')]")
 
@@ -870,55 +865,49 @@ return [box.left, box.top + box.height / 2, box.width];""")
     assert press("z") == [start, False, "false"]
     assert press("y") == [dimmed, False, "false"]
     assert press("z", 8) == [dimmed, True, "true"]
-    browser.run("document.querySelector('#presets button').click()")
+    browser.choose_preset()
     assert press("z") == [dimmed, True, "true"]
-    browser.run("document.querySelector('#presets button').click(); page.panel.unfold(false)")
+    browser.choose_preset()
+    browser.run("page.panel.unfold(false)")
 
 
 def check_presets(browser):
-    browser.run("[...document.querySelectorAll('#presets button')].find((b) => b.textContent === 'left alone').click()")
-    assert browser.run("return page.lights.states.map((state) => state.on)") == [True, False]
-    browser.run("document.querySelector('#presets button').click()")
-    assert browser.run("return page.lights.states.map((state) => state.on)") == [True, True]
+    for name, states in (("left alone", [True, False]), (None, [True, True])):
+        browser.choose_preset(name)
+        assert browser.run("return page.lights.states.map((state) => state.on)") == states
 
 
 def test_controls(browser, folder):
     page = folder / "hall.html"
     scene, made = obj_room(folder), ["--quality", "draft", "--photons", "50k", "--texel", "0.2", "-q"]
     photile("publish", scene, "-o", page, "--eye", "3,1.6,4.5", "--look-at", "3,2,0", *made)
-    browser.open(page)
+    browser.open(page.as_uri())
     assert browser.run("return [room.cameras[0].name, ...room.cameras[0].position]") == ["view", 3, 1.6, 4.5]
     for check in (check_keyboard, check_slow_frames, check_mouse, check_touch, check_gamepad, check_presets, check_lamps,
                   check_undo):
         check(browser)
     check_pictures(browser, folder)
     check_coats(browser)
-    check_link(browser, page)
+    check_link(browser, page.as_uri())
     photile("publish", scene, "-o", page, "--set", "up=z", *made, "--sky", "patches=145", "--site", "52.5,13.4,1")
-    browser.open(page)
+    browser.open(page.as_uri())
     check_hours(browser)
     check_points(browser, folder, scene, "--set", "up=z")
 
 
-# The light of a frame and what the canvas shows of it, rows from below.
-FRAME = BASE64 + """
-page.setExposure(arguments[0]);
-const {renderer} = page, {gl, screen} = renderer;
-renderer.draw(page.walker);
-const {width, height} = renderer.canvas;
-const shown = new Uint8Array(4 * width * height), light = new Float32Array(4 * width * height);
-gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, shown);
-gl.bindFramebuffer(gl.FRAMEBUFFER, screen.pixels);
+# What the canvas shows of a frame, and its light.
+FRAME = "page.setExposure(arguments[0]);" + SHOWN + """
+const light = new Float32Array(4 * width * height);
+gl.bindFramebuffer(gl.FRAMEBUFFER, page.renderer.screen.pixels);
 gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, light);
 gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-return [base64(light), base64(shown)];
+return [base64(shown), base64(light)];
 """
 
 
 def check_transform(browser, folder, stops):
     """The canvas shows the light of a frame as `photile relight` shows a picture of that light."""
-    light, shown = (np.frombuffer(base64.b64decode(text), kind).reshape(SIZE[1], SIZE[0], 4)[::-1, :, :3]
-                    for text, kind in zip(browser.run(FRAME, stops), (np.float32, np.uint8)))
+    shown, light = map(pixels_of, browser.run(FRAME, stops), (np.uint8, np.float32))
     file, png = folder / "frame.exr", folder / "frame.png"
     names = ["R", "G", "B", *(f"ViewLayer.Combined_room.{channel}" for channel in "RGB")]
     spec = oiio.ImageSpec(SIZE[0], SIZE[1], len(names), oiio.FLOAT)
@@ -929,8 +918,8 @@ def check_transform(browser, folder, stops):
     output.write_image(np.ascontiguousarray(np.concatenate([light, light], 2)))
     output.close()
     photile("relight", file, "-o", png, "--set", "auto_exposure=off", "--exposure", stops)
-    expected = np.asarray(oiio.ImageInput.open(str(png)).read_image(format=oiio.UINT8))[:, :, :3]
-    difference = np.abs(shown.astype(int) - expected.astype(int))
+    expected = np.round(255 * channels_of(png))
+    difference = np.abs(shown - expected)
     print(f"{stops:+} stops: {100 * (difference > 0).mean():.2f}% of the values differ, by {difference.max()} at most")
     assert difference.max() <= 1
     assert expected.max() > 250 and expected.min() < 200  # of lamps, and of the room
@@ -956,21 +945,21 @@ def test_display(browser, folder):
     made = ["--quality", "draft", "--photons", "50k", "-q"]
     page, rendered = folder / "hall.html", folder / "hall.exr"
     photile("publish", scene, "-o", page, "--texel", "0.1", *made)
-    browser.open(page)
+    browser.open(page.as_uri())
     camera = browser.run("return room.cameras[0]")
     photile("render", scene, "-o", rendered, *made)
     display = browser.run("return room.display")
     white = oiio.ImageInput.open(str(rendered)).spec().getattribute("photile.white")
     near(np.array(display["white"]) / np.array(list(map(float, white.split()))), 1, 0.003)
     assert display["white"][0] > 1.1 > 0.8 > display["white"][2], display
-    near(display["exposure"] / automatic_exposure(radiance_of(rendered).reshape(-1, 3)), 1, 0.01)
+    near(display["exposure"] / automatic_exposure(channels_of(rendered).reshape(-1, 3)), 1, 0.01)
     # Of other lamps the white is the same.
     other = folder / "other.html"
     photile("publish", scene, "-o", other, "--texel", "0.1", *made, "--light", "*=2000K", "--light", "left=off")
-    browser.open(other)
+    browser.open(other.as_uri())
     near(np.array(browser.run("return room.display.white")) / display["white"], 1, 0.003)
 
-    browser.open(page)
+    browser.open(page.as_uri())
     at = ["--eye", "3,1.6,4.5", "--look-at", "3,2.275,0"]
     photile("render", scene, "-o", rendered, "-o", folder / "hall.png", "--size", "%dx%d" % SIZE,
             "--field-of-view", math.degrees(camera["angle"]), *at, *made)
@@ -979,7 +968,7 @@ def test_display(browser, folder):
     for stops in (-3, 0, 2.5):
         check_transform(browser, folder, stops)
     # Through the pane, whose image is in the middle, as beside it.
-    page_light, light = browser.radiance().astype(float), radiance_of(rendered)
+    page_light, light = browser.radiance().astype(float), channels_of(rendered)
     for what, part in (("behind the pane", np.s_[125:155, 135:185]), ("beside it", np.s_[125:155, 60:90])):
         ratio = page_light[part].mean((0, 1)) / light[part].mean((0, 1))
         print(f"{what}: {ratio} of the light of the picture")
@@ -1004,7 +993,7 @@ def test_many_lights(browser, folder):
         scene = room_of_lights(folder, count)
         page = folder / f"lights{count}.html"
         photile("publish", scene, "-o", page, "--quality", "draft", "--photons", "100k", "--texel", "0.1", "-q")
-        browser.open(page)
+        browser.open(page.as_uri())
         assert browser.run("return room.lights.length") == count
         time = np.median(browser.run(FRAME_TIMES, 60, False))
         draws[count] = browser.run("return page.renderer.drawCalls")
@@ -1013,21 +1002,20 @@ def test_many_lights(browser, folder):
     assert draws[2] == draws[256]
 
 
-def main():
+def main(tests, kind=Browser):
+    """Runs the test that the command line names in a browser, whose pages have to report nothing."""
     if not (pathlib.Path(CHROMIUM).exists() and pathlib.Path(DRIVER).exists()):
         print("skipped: no chromium with its driver; apt-get install chromium chromium-driver")
-        return 77
-    browser = Browser()
+        sys.exit(77)
+    browser = kind()
     try:
         with tempfile.TemporaryDirectory() as folder:
-            result = globals()[f"test_{sys.argv[1]}"](browser, pathlib.Path(folder))
-        messages = browser.messages()
+            tests[f"test_{sys.argv[1]}"](browser, pathlib.Path(folder))
+        messages = [entry["message"] for entry in browser.driver.get_log("browser")]
         assert not messages, messages
     finally:
         browser.driver.quit()
-    return result or 0
 
 
 if __name__ == "__main__":
-    PHOTILE, SOURCE = sys.argv[2], pathlib.Path(sys.argv[3])
-    sys.exit(main())
+    main(globals())

@@ -59,8 +59,7 @@ def test_normals_decide_which_points_count():
     ({"k": 0}, "neighbours"), ({"k": -1}, "neighbours"), ({"k": 1_000_001}, "neighbours"), ({"k": 1.5}, "k"),
     ({"max_distance": 0}, "distance"), ({"max_distance": np.nan}, "distance"), ({"angle": 181}, "angle"),
     ({"normals": [[0, 0, 1]]}, "0 normals for 1 queries"), ({"device": "no such"}, "no such"),
-    ({"normals": [[0, 0, 2]], "query_normals": [[0, 0, 1]]}, "point 0 has a normal"),
-])
+    ({"normals": [[0, 0, 2]], "query_normals": [[0, 0, 1]]}, "point 0 has a normal")])
 def test_what_is_wrong_is_said_in_a_line(wrong, message):
     with pytest.raises(photile.Error, match=message) as error:
         photile.neighbours(**{"points": [[0, 0, 0]], "queries": [[0, 0, 0]], "k": 1, **wrong})

@@ -44,11 +44,9 @@ def test_what_was_given_is_what_there_is():
         triangles,
         materials=[photile.Material("red", (0.5, 0.1, 0.1)), glass],
         triangle_materials=[0, 1, 0, 0],
-        lights=[
-            photile.Light("spot", 50, "spot", position=(1, 2, 3), outer_angle=30, group="all"),
-            photile.Light("panel", 100, "area", triangles=[2, 3], group="all"),
-            photile.Light("sun", kind="directional", illuminance=1000, direction=(0, 0, -1)),
-        ],
+        lights=[photile.Light("spot", 50, "spot", position=(1, 2, 3), outer_angle=30, group="all"),
+                photile.Light("panel", 100, "area", triangles=[2, 3], group="all"),
+                photile.Light("sun", kind="directional", illuminance=1000, direction=(0, 0, -1))],
         cameras=[photile.Camera((0, 0, 5), (0, 0, 0), (0, 1, 0), 35, "top", 1.5)],
     )
     assert scene.triangle_material.tolist() == [0, 1, 0, 0]
@@ -98,12 +96,10 @@ def test_a_texture_is_what_photons_see():
     # Half of the floor is black: photons of the lamp above it are absorbed there.
     texels = np.zeros((1, 2, 3), np.uint8)
     texels[0, 1] = 255
-    scene = photile.Scene(
-        quad([0, 0, 0], [2, 0, 0], [0, 2, 0]),
-        uv=[[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]],
-        materials=[photile.Material("half", (1, 1, 1), texture=texels)],
-        lights=[photile.Light("lamp", 1, position=(1, 1, 0.5))],
-    )
+    scene = photile.Scene(quad([0, 0, 0], [2, 0, 0], [0, 2, 0]),
+                          uv=[[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]],
+                          materials=[photile.Material("half", (1, 1, 1), texture=texels)],
+                          lights=[photile.Light("lamp", 1, position=(1, 1, 0.5))])
     photons = photile.trace(scene, 20_000)
     reached = 1 - photons.escaped_flux[0] - photons.absorbed_flux[0]
     assert abs(reached) < 1e-6

@@ -32,27 +32,24 @@ def check(field, make):
 
 
 @pytest.mark.parametrize("name, value", [
-    ("diffuse", "red"), ("diffuse", (1, 2)), ("roughness", None), ("interaction", 5),
-    ("opacity", "x"), ("texture", "no"), ("specular", (1e300, 0, 0)), ("roughness", -1), ("roughness", 1.5),
-    ("texture", float("inf")),
-])
+    ("diffuse", "red"), ("diffuse", (1, 2)), ("roughness", None), ("interaction", 5), ("opacity", "x"),
+    ("texture", "no"), ("specular", (1e300, 0, 0)), ("roughness", -1), ("roughness", 1.5),
+    ("texture", float("inf"))])
 def test_of_a_material(name, value):
     check("material.*m", lambda: scene(materials=[Material(**{"name": "m", name: value})]))
 
 
 @pytest.mark.parametrize("name, value", [
     ("power", "x"), ("power", NAN), ("kind", 3), ("color", (1, 1)), ("position", (0, 0)),
-    ("direction", "down"), ("outer_angle", None), ("group", 4), ("triangles", "abc"),
-])
+    ("direction", "down"), ("outer_angle", None), ("group", 4), ("triangles", "abc")])
 def test_of_a_light(name, value):
     check("light 'l'", lambda: scene(lights=[Light(**{"name": "l", "power": 1, name: value})]))
 
 
 @pytest.mark.parametrize("name, value", [
-    ("position", (0, 0)), ("target", (1,)), ("up", None), ("up", (0, NAN, 0)),
-    ("field_of_view", "x"), ("field_of_view", NAN), ("aspect_ratio", "x"), ("aspect_ratio", NAN),
-    ("position", (10**400, 0, 0)), ("field_of_view", 10**400),
-])
+    ("position", (0, 0)), ("target", (1,)), ("up", None), ("up", (0, NAN, 0)), ("field_of_view", "x"),
+    ("field_of_view", NAN), ("aspect_ratio", "x"), ("aspect_ratio", NAN), ("position", (10**400, 0, 0)),
+    ("field_of_view", 10**400)])
 def test_of_a_camera(name, value):
     camera = Camera(**{"position": (0, 0, 1), "target": (1, 0, 0), name: value})
     check("camera 'camera'", lambda: scene(cameras=[camera]))
@@ -64,8 +61,7 @@ def test_of_a_camera(name, value):
     ("lumen_per_watt", NAN), ("environment_scale", 0), ("environment_rotation", NAN),
     ("up", 3), ("sun", "a"), ("sky", ("x",)), ("panels", {"x": 1}), ("temperatures", {"x": None}),
     ("site", (1, 2)), ("time", "noon"), ("north", NAN), ("reflectance", {"x": 2}), ("hide", "nothing"),
-    ("luminaires", ["x.ies"]), ("luminaires", [{"file": "x.ies", "lumens": NAN}]), ("luminaires", [{"file": "x.ies"}]),
-])
+    ("luminaires", ["x.ies"]), ("luminaires", [{"file": "x.ies", "lumens": NAN}]), ("luminaires", [{"file": "x.ies"}])])
 def test_of_a_file(tmp_path, name, value):
     file = tmp_path / "room.obj"
     file.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
@@ -80,8 +76,7 @@ def test_of_a_file(tmp_path, name, value):
     ("lumen_per_watt", "x"), ("lumen_per_watt", NAN), ("integrator", 4), ("camera", b"x"),
     ("seed", "\udcff"), ("seed", np.zeros((2, 2))), ("samples_per_pixel", np.array([["a"]])),
     ("neighbours", 0), ("seed", -1), ("maps", "octree"), ("photons", 5), ("quality", "best"), ("integrator", "bdpt"),
-    ("camera", "cellar"), ("camera", 3),
-])
+    ("camera", "cellar"), ("camera", 3)])
 def test_of_a_rendering(name, value):
     message = {"maps": "is not one of", "photons": "no such setting"}.get(name, name)
     check(message, lambda: render(**{name: value}))
@@ -92,16 +87,14 @@ def test_of_a_rendering(name, value):
     ("maintenance", NAN), ("lumen_per_watt", NAN), ("points", "x"), ("normals", "x"),
     ("points", [[1, 2], [3]]), ("points", [[0, 10**400, 0]]), ("normals", [[0, 10**400, 0]]),
     ("points", [0, 0, 0]), ("points", [[0, 0, np.inf]]), ("normals", [[0, 0, 0]]), ("normals", [[0, 0, 1]] * 2),
-    ("repeats", 1), ("rays", 0), ("integrator", "guess"),
-])
+    ("repeats", 1), ("rays", 0), ("integrator", "guess")])
 def test_of_a_measurement(name, value):
     check(name, lambda: measure(**{name: value}))
 
 
 @pytest.mark.parametrize("name, value", [
     ("corner", "x"), ("corner", (0, NAN, 0)), ("along", (1, 2)), ("across", (0, 10**400, 0)), ("columns", 0),
-    ("columns", NAN), ("rows", None), ("rows", 1.5),
-])
+    ("columns", NAN), ("rows", None), ("rows", 1.5)])
 def test_of_a_grid(name, value):
     room = {"corner": (0, 0, 0), "along": (1, 0, 0), "across": (0, 1, 0), "columns": 2, "rows": 2}
     check(name, lambda: photile.grid(**{**room, name: value}))
@@ -116,8 +109,7 @@ def test_of_a_grid(name, value):
     ("grids makes some", lambda of: photile.daylight(of, [], "a.epw")),
     ("patches", lambda of: photile.daylight(of, [], "a.epw", patches=5)),
     ("no.epw", lambda of: photile.daylight(of, photile.Grid.of_points([[0, 0, 1]]), "no.epw")),
-    ("results", lambda of: photile.write_report("a.html", 3)), ("progress", lambda of: measure(of, progress=3)),
-])
+    ("results", lambda of: photile.write_report("a.html", 3)), ("progress", lambda of: measure(of, progress=3))])
 def test_of_lighting(message, call):
     check(message, lambda: call(scene()))
 
@@ -159,8 +151,7 @@ def test_of_changes_and_displays():
     ("triangle_materials", {"triangle_materials": [1]}), ("foam", {"materials": [Material("m", interaction="foam")]}),
     ("'m'", {"materials": [Material("m", texture=np.zeros((2, 2), np.uint8))]}),
     ("index 12", {"lights": [Light("a", 1, "area", triangles=[12])]}), ("'a'", {"lights": [Light("a", 1, "area")]}),
-    ("'a'", {"lights": [Light("a", NAN)]}), ("candle", {"lights": [Light("a", 1, "candle")]}),
-])
+    ("'a'", {"lights": [Light("a", NAN)]}), ("candle", {"lights": [Light("a", 1, "candle")]})])
 def test_of_a_scene(message, parts):
     check(message, lambda: scene(**parts))
 

@@ -115,9 +115,8 @@ std::vector<LightLayers> by_maps(const Scene& scene, const std::vector<Camera>& 
                                  const RenderParameters& parameters) {
   SceneRenderer renderer(scene, std::span(&device(), 1), parameters);
   std::vector<LightLayers> layers;
-  for (const Camera& camera : cameras) {
+  for (const Camera& camera : cameras)
     layers.push_back(renderer.render(camera, parameters.film).layers);
-  }
   return layers;
 }
 
@@ -152,9 +151,8 @@ TEST_CASE("a pool shows the radiance of its closed form, by paths") {
   const double albedo = GENERATE(0.5, 1.0);
   check_pool(albedo, 0.05, [](const Scene& scene, const auto& cameras, std::uint64_t seed) {
     std::vector<LightLayers> layers;
-    for (const Camera& camera : cameras) {
+    for (const Camera& camera : cameras)
       layers.push_back(trace_paths(scene, camera, eye_rays(parameters_of(1, 256, seed))).layers);
-    }
     return layers;
   });
 }

@@ -151,7 +151,7 @@ def test_every_word_of_templates_and_tables_is_translated_and_every_translated_o
     assert {english for english, german in words.items() if english == german} == {"LENI (EN 15193)"}
     for english, german in words.items():
         assert sorted(re.findall("{.*?}", english)) == sorted(re.findall("{.*?}", german)), english
-    files = [*(FOLDER.parents[2] / "host").rglob("*.[ch]pp"), *FOLDER.glob("*.py"), *FOLDER.glob("templates/*")]
+    files = [*(FOLDER.parents[2] / "host").rglob("*.[ch][ps][pv]"), *FOLDER.glob("*.py"), *FOLDER.glob("templates/*")]
     sources = re.sub(r'"\s*"|\s', "", " ".join(file.read_text(encoding="utf-8") for file in files))
     unused = [english for english in words if not english.endswith(" wall") and not any(
         re.sub(r"\s", "", part) in sources for part in re.split(r"{.*?}|: |; ", english) if len(part) > 1)]

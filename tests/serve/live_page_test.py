@@ -4,7 +4,6 @@
 Usage: live_page_test.py page PHOTILE SOURCE_FOLDER
 """
 
-import base64
 import json
 import math
 import pathlib
@@ -12,14 +11,13 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
 import urllib.parse
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "publish"))
 import page_test  # noqa: E402
-from page_test import BASE64, SET_POWER, SIZE, channels_of, near, np, photile  # noqa: E402
-from served import Served  # noqa: E402
+from page_test import BASE64, PHOTILE, SET_POWER, SIZE, SOURCE, channels_of, near, np, photile  # noqa: E402
+from served import Served, room_of_gallery  # noqa: E402
 
 MADE = ["--quality", "draft", "--photons", "50k", "-q"]
 EYE, FORWARD = [3, 1.6, 4.5], [0, 0, -1]
@@ -44,20 +42,9 @@ class Browser(page_test.Browser):
         self.run_command("Network.emulateNetworkConditions",
                          {"offline": False, "latency": 0, "downloadThroughput": -1, "uploadThroughput": -1})
 
-    def visit(self, url, state=""):
-        began = time.monotonic()
-        self.driver.get(url + (f"#{state}" if state else ""))
-        self.until("return document.getElementById('loading') === null")
-        self.run(page_test.COUNT_FRAMES)
-        return time.monotonic() - began
-
-    def until(self, script, seconds=90):
-        for _ in range(20 * seconds):
-            value = self.run(script)
-            if value:
-                return value
-            time.sleep(0.05)
-        raise AssertionError(f"never: {script}")
+    def leave(self):
+        """The page, before its server ends."""
+        self.driver.get("about:blank")
 
     def stand(self, eye=EYE, forward=FORWARD):
         self.run(page_test.STAND, eye, forward)
@@ -66,34 +53,32 @@ class Browser(page_test.Browser):
     def exact(self):
         self.until("const {rest} = page.renderer; return document.getElementById('work').hidden && "
                    "rest?.shown === 1 && rest.number === page.live.picture")
-        text = self.run(RESTING)
-        return np.frombuffer(base64.b64decode(text), np.float32).reshape(SIZE[1], SIZE[0], 4)[::-1, :, :3]
+        return page_test.pixels_of(self.run(RESTING), np.float32)
+
+    def rendered(self, file, scene, *options):
+        """What `photile render` writes of its view from where `stand` is."""
+        photile("render", scene, "-o", file, "--size", "%dx%d" % SIZE, "--field-of-view",
+                math.degrees(self.run("return page.walker.angle")), "--eye", ",".join(map(str, EYE)),
+                "--look-at", ",".join(str(e + f) for e, f in zip(EYE, FORWARD)), *options, *MADE)
+        return file
 
 
 def check_first_light(browser):
     """Something is to be seen at once, never a black picture, and light comes to it."""
-    shown = browser.run("""
-page.renderer.draw(page.walker);
-const {gl, canvas} = page.renderer, texels = new Uint8Array(4 * canvas.width * canvas.height);
-gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, texels);
-return [page.renderer.isLit, texels.reduce((sum, value) => sum + value) / texels.length];""")
-    print(f"lit, mean grey: {shown}")
-    assert shown[1] > 100, shown
-    browser.until("return page.renderer.isLit")
-    browser.until("return page.live.fading <= 0")
+    grey = browser.run(page_test.SHOWN + "return shown.reduce((sum, value) => sum + value) / shown.length;")
+    print(f"mean grey: {grey}")
+    assert grey > 100, grey
+    browser.until("return page.renderer.isLit && page.live.fading <= 0")
 
 
 def check_picture(browser, folder, scene):
     """The picture at rest is that of `photile render`, as half floats, and sliders mix it."""
     browser.stand()
     found = browser.exact()
-    angle = math.degrees(browser.run("return page.walker.angle"))
-    rendered, relit = folder / "hall.exr", folder / "relit.exr"
-    photile("render", scene, "-o", rendered, "--size", "%dx%d" % SIZE, "--field-of-view", angle, "--eye",
-            ",".join(map(str, EYE)), "--look-at", ",".join(str(e + f) for e, f in zip(EYE, FORWARD)), *MADE)
+    rendered, relit = browser.rendered(folder / "hall.exr", scene), folder / "relit.exr"
 
     def compare(what, picture):
-        expected = channels_of(picture, "RGB")
+        expected = channels_of(picture)
         error = np.abs(found - expected) / np.maximum(expected, 1e-3 * expected.max())
         print(f"{what}: off by {error.max():.2g}", flush=True)
         assert error.max() < 4 * HALF, what  # of two layers, and of their sum
@@ -106,7 +91,7 @@ def check_picture(browser, folder, scene):
     # What is drawn from light maps beside it.
     browser.run("page.renderer.dropRest()")
     drawn = browser.radiance().astype(float)
-    page_test.compare_pixels("light maps", drawn, channels_of(relit, "RGB"), np.ones(drawn.shape[:2], bool))
+    page_test.compare_pixels("light maps", drawn, channels_of(relit), np.ones(drawn.shape[:2], bool))
     browser.run(SET_POWER, "left", 1)
 
 
@@ -118,8 +103,7 @@ def check_lux(browser, folder, scene):
             "first.repeats = repeats.slice(0, arguments[0]); const {lux, error} = page.points.read(first);"
             "first.repeats = repeats; return {lux: lux[0], error: error[0]};")
     for x in (160, 60):
-        browser.mouse("Pressed", x, 100)
-        browser.mouse("Released", x, 100)
+        browser.click(x, 100)
     browser.until("return page.points.all[0].repeats.length >= 30")
     early, late = browser.run(read, 8), browser.run(read, 30)
     assert late["error"] < early["error"], (early, late)
@@ -140,7 +124,7 @@ def check_lux(browser, folder, scene):
 def check_walk(browser):
     browser.stand()
     browser.exact()
-    browser.hold("w", 0.4, "KeyW")
+    browser.hold("w", 0.4)
     assert browser.viewer()["eye"][2] < EYE[2] - 0.1
     browser.exact()
 
@@ -160,10 +144,10 @@ form.querySelector('button').click();""")
     assert kept["right"]["kelvin"] == 3000 and kept["left"]["on"], kept
     full = browser.run("return room.lights[0].power")
     near(kept["left"]["power"] / full, 0.25, 1e-3)
-    buttons = "[...document.querySelectorAll('#presets button')]"
-    browser.run(f"{buttons}[0].click()")
+    browser.choose_preset()
     near(browser.run("return page.lights.states[0].power") / full, 1, 1e-6)
-    browser.run(f"{buttons}.find((one) => one.title.startsWith('Write')).click()")
+    button = "[...document.querySelectorAll('#presets button')].find((one) => one.title.startsWith(arguments[0])).click()"
+    browser.run(button, "Write")
     copy = scene.with_name(f"{scene.stem}.evening.obj")
     for _ in range(200):
         if copy.exists():
@@ -172,14 +156,14 @@ form.querySelector('button').click();""")
     left, written = (next(light["lumens"] for light in json.loads(photile("info", file, "--json"))["lights"]
                           if light["name"] == "left") for file in (scene, copy))
     near(written / left, 0.25, 1e-3)
-    browser.run(f"{buttons}.find((one) => one.textContent === 'evening').click()")
+    browser.choose_preset("evening")
     near(browser.run("return page.lights.states[0].power") / full, 0.25, 1e-3)
     assert browser.run("return page.lights.states[1].kelvin") == 3000
     near(browser.run("return page.lights.states[0].tint"), tint, 1e-5)
-    browser.run(f"{buttons}.find((one) => one.title === 'Remove evening').click()")
+    browser.run(button, "Remove evening")
     browser.until("return !room.presets.some((preset) => preset.name === 'evening')")
     assert "evening" not in json.loads(moods.read_text())["moods"]
-    browser.run(f"{buttons}[0].click()")
+    browser.choose_preset()
 
 
 def check_two(browser, url):
@@ -189,21 +173,20 @@ def check_two(browser, url):
     time.sleep(0.3)
     first = browser.driver.current_window_handle
     browser.driver.switch_to.new_window("tab")
-    browser.visit(url)
-    half = "return Math.abs(page.lights.states[0].power / room.lights[0].power - {}) < 0.01"
-    browser.until(half.format(0.5))
+    browser.open(url)
+    dimmed = "return Math.abs(page.lights.states[0].power / room.lights[0].power - arguments[0]) < 0.01"
+    browser.until(dimmed, 0.5)
     assert browser.run("return page.lights.states.map((state) => state.solo)") == [False, True]
     state = {"eye": [2, 1.5, 3], "look": [0.3, 0, 1], "ev": 0.5, "lights": {"left": [browser.run(
         "return 0.75 * room.lights[0].power"), 1, 2700]}, "day": None}
-    browser.driver.get("about:blank")
-    browser.visit(url, urllib.parse.quote(json.dumps(state)))
-    browser.until(half.format(0.75))
+    browser.open(url, urllib.parse.quote(json.dumps(state)))
+    browser.until(dimmed, 0.75)
     near(browser.viewer()["eye"], [2, 1.5, 3], 1e-3)
     assert browser.run("return page.stops") == 0.5
     browser.until("return page.renderer.rest")
     browser.driver.close()
     browser.driver.switch_to.window(first)
-    browser.until(half.format(0.75))
+    browser.until(dimmed, 0.75)
     assert browser.run("return page.lights.states[0].kelvin") == 2700
     assert browser.viewer()["eye"] != [2, 1.5, 3]
 
@@ -212,19 +195,9 @@ def check_exr(browser, folder, scene):
     """The saved picture is the file of `photile render`, also with a lamp moved."""
     browser.stand()
     browser.exact()
-    browser.run_command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(folder)})
-    saved, rendered = folder / f"{scene.stem}.exr", folder / "rendered.exr"
-    angle = math.degrees(browser.run("return page.walker.angle"))
-    photile("render", scene, "-o", rendered, "--size", "%dx%d" % SIZE, "--field-of-view", angle, "--eye",
-            ",".join(map(str, EYE)), "--look-at", ",".join(str(e + f) for e, f in zip(EYE, FORWARD)), "--light",
-            "left=x0.5", *MADE)
+    rendered = browser.rendered(folder / "rendered.exr", scene, "--light", "left=x0.5")
     browser.run(SET_POWER, "left", 0.5)
-    saved.unlink(missing_ok=True)
-    browser.hold("s", 0, "KeyS", modifiers=2)
-    for _ in range(600):
-        if saved.exists():
-            break
-        time.sleep(0.05)
+    saved = browser.saved(folder, f"{scene.stem}.exr", lambda: browser.press("s", 2))
     found, expected = (page_test.oiio.ImageInput.open(str(file)) for file in (saved, rendered))
     assert list(found.spec().channelnames) == list(expected.spec().channelnames)
     assert found.spec().getattribute("photile.white") == expected.spec().getattribute("photile.white")
@@ -238,27 +211,22 @@ def check_photons(browser):
     """A click tints the triangle and shows its photons; without the mode it measures."""
     browser.stand([3, 1.6, 3.5], [0, -0.6, -0.8])
     browser.exact()
-    pixel = """
-page.renderer.draw(page.walker);
-const {gl, canvas} = page.renderer, texel = new Uint8Array(4 * 40 * 40);
-gl.readPixels(140, canvas.height - 120, 40, 40, gl.RGBA, gl.UNSIGNED_BYTE, texel);
-return [...texel];"""
-    plain = np.array(browser.run(pixel)).reshape(-1, 4)[:, :3].astype(float)
+    around = np.s_[80:120, 140:180]
+    plain = browser.shown()[around]
     toggle = "[...document.querySelectorAll('#display button')].find((one) => one.textContent.includes('Photons'))"
     browser.run(f"{toggle}.click()")
-    browser.mouse("Pressed", 160, 100)
-    browser.mouse("Released", 160, 100)
+    browser.click(160, 100)
     browser.until("return page.live.photons.parts")
     assert browser.run("return page.points.all.length === 0"), "a click measures, too"
-    shown = np.array(browser.run(pixel)).reshape(-1, 4)[:, :3].astype(float)
-    tinted = np.abs(shown - (0.6 * plain + 0.4 * np.array([230, 60, 40]))).max(axis=1) < 3
-    yellow = np.abs(shown - [255, 230, 0]).max(axis=1) < 3
+    shown = browser.shown()[around]
+    tinted = np.abs(shown - (0.6 * plain + 0.4 * np.array([230, 60, 40]))).max(axis=2) < 3
+    yellow = np.abs(shown - [255, 230, 0]).max(axis=2) < 3
     print(f"photons: tinted {tinted.mean():.0%}, photons {yellow.mean():.0%}")
     assert tinted.mean() > 0.1 and yellow.mean() > 0.1 and tinted.mean() + yellow.mean() > 0.9
     assert "photons on it" in browser.run("return document.querySelector('#display .legend').textContent")
     browser.run(f"{toggle}.click()")
     browser.exact()
-    again = np.array(browser.run(pixel)).reshape(-1, 4)[:, :3]
+    again = browser.shown()[around]
     assert np.array_equal(again, plain), np.abs(again - plain).max()
 
 
@@ -282,31 +250,26 @@ input.dispatchEvent(new Event('change'));""")
 def check_glare(browser, folder):
     """Reflections are marked as `photile render --glare` marks them."""
     for end in ("gltf", "bin"):
-        shutil.copy(page_test.SOURCE / f"scenes/gallery/glossy-floor.{end}", folder)
+        shutil.copy(SOURCE / f"scenes/gallery/glossy-floor.{end}", folder)
     scene = folder / "glossy-floor.gltf"
     limit = 0.2  # of the mean
-    result = subprocess.run([page_test.PHOTILE, "render", scene, "-o", folder / "floor.exr", "--glare",
-                             folder / "glare.png", "--set", f"glare_limit={limit}", "--size", "%dx%d" % SIZE, *MADE[:-1]],
+    result = subprocess.run([PHOTILE, "render", scene, "-o", folder / "floor.exr", "--glare", folder / "glare.png",
+                             "--set", f"glare_limit={limit}", "--size", "%dx%d" % SIZE, *MADE[:-1]],
                             capture_output=True, text=True, check=True)
     expected = [float(part) for part in re.search(
         r"glare: \S+: (\S+)% of the picture above (\S+) .*, up to (\S+)", result.stdout + result.stderr).groups()]
-    with Served(page_test.PHOTILE, scene, *MADE) as served:
-        browser.visit(served.url)
+    with Served(PHOTILE, scene, *MADE) as served:
+        browser.open(served.url)
         browser.run("document.querySelector('[name=shown][value=glare]').click()")
         browser.run("const limit = document.getElementById('glare-limit'); limit.value = arguments[0]; "
                     "limit.dispatchEvent(new Event('change'))", limit)
         browser.exact()
         browser.until("return page.live.glare.marks?.rest === page.renderer.rest")
         text = browser.run("return page.live.glare.section.textContent")
-        colours = np.array(browser.run("""
-page.renderer.draw(page.walker);
-const {gl, canvas: {width, height}} = page.renderer, texels = new Uint8Array(4 * width * height);
-gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, texels);
-return [...texels];""")).reshape(SIZE[1], SIZE[0], 4)[::-1, :, :3]
-        shown = np.abs(colours - browser.run("return page.live.glare.marks.colours[0]")).max(axis=2) < 2
-        print(f"glare: {expected}; {text}; marked {shown.mean():.2%}")
-        assert abs(100 * shown.mean() - expected[0]) < 0.02 * expected[0], (shown.mean(), expected)
-        browser.driver.get("about:blank")
+        marked = np.abs(browser.shown() - browser.run("return page.live.glare.marks.colours[0]")).max(axis=2) < 2
+        print(f"glare: {expected}; {text}; marked {marked.mean():.2%}")
+        assert abs(100 * marked.mean() - expected[0]) < 0.02 * expected[0], (marked.mean(), expected)
+        browser.leave()
 
 
 def check_many_lights(browser, folder):
@@ -314,9 +277,8 @@ def check_many_lights(browser, folder):
     draws = []
     for count in (2, 256):
         scene = page_test.room_of_lights(folder, count)
-        with Served(page_test.PHOTILE, scene, "--quality", "draft", "--photons", "5k", "--samples", "1",
-                    "-q") as served:
-            browser.visit(served.url)
+        with Served(PHOTILE, scene, "--quality", "draft", "--photons", "5k", "--samples", "1", "-q") as served:
+            browser.open(served.url)
             browser.until("return document.getElementById('work').hidden && page.renderer.rest?.shown === 1")
             times = browser.run(page_test.FRAME_TIMES, 10, True)
             draws.append(browser.run("return page.renderer.drawCalls"))
@@ -332,16 +294,18 @@ def check_many_lights(browser, folder):
             alone = browser.radiance().mean()
             print(f"a slider takes {whole - without:.4g} of {whole:.4g}; the lamp alone: {alone:.4g}")
             near(whole - without, alone, 0.05 * alone)
-            browser.driver.get("about:blank")
+            browser.leave()
     assert draws[0] == draws[1] > 1, draws
 
 
 def check_luminaires(browser, folder):
     """Lamps are placed by a click, dragged and copied; the page goes on where it was with each new scene."""
-    for name in ("sun-and-sky.gltf", "sun-and-sky.bin", "downlight.ies"):
-        shutil.copy(page_test.SOURCE / "scenes/gallery" / name, folder)
-    lamps = folder / "lamps.json"
+    scene, lamps = room_of_gallery(SOURCE, folder), folder / "lamps.json"
     lamp = "page.live?.luminaires?.state.entries"
+
+    def middle_of(outline):
+        return browser.run("const {x, y, width, height} = document.querySelector(arguments[0]).getBoundingClientRect(); "
+                           "return [x + width / 2, y + height / 2]", f"#outlines {outline}")
 
     def loaded(condition):
         browser.until(f"return typeof page === 'object' && document.getElementById('loading') === null && "
@@ -352,70 +316,58 @@ def check_luminaires(browser, folder):
         browser.until("return !page.live.luminaires.state.unsaved")
         return json.loads(lamps.read_text())
 
-    with Served(page_test.PHOTILE, folder / "sun-and-sky.gltf", "--luminaires", lamps, *MADE) as served:
-        browser.visit(served.url)
+    with Served(PHOTILE, scene, "--luminaires", lamps, *MADE) as served:
+        browser.open(served.url)
         loaded("page.renderer.isLit")
         browser.run("page.setExposure(1); page.setPace(1); document.getElementById('follow').checked = false")
-        browser.mouse("Pressed", 40, 120)
-        browser.mouse("Released", 40, 120)
+        browser.click(40, 120)
         browser.until("return page.points.all.length === 1")
         point = browser.run("return page.points.all[0].place")
-        before = browser.viewer()
-        hit = browser.run("return page.meet(140, 100)")
+        before = browser.pose()
+        place = browser.run("return page.meet(140, 100).place")
         browser.press("b")
-        browser.mouse("Pressed", 140, 100)
-        browser.mouse("Released", 140, 100)
+        browser.click(140, 100)
         loaded("room.lights.length === 1 && room.lights[0].name === 'downlight'")
-        after = browser.viewer()
-        near([*after["eye"], after["yaw"], after["pitch"]], [*before["eye"], before["yaw"], before["pitch"]], 1e-3)
+        near(browser.pose(), before, 1e-3)
         assert browser.run("return [page.stops, page.walker.pace, document.getElementById('follow').checked]") == [1, 2.8, False]
         near(browser.run("return page.points.all[0].place"), point, 1e-3)
         assert not lamps.exists()
         assert browser.run("const event = new Event('beforeunload', {cancelable: true}); window.dispatchEvent(event); "
                            "return event.defaultPrevented"), "unsaved changes are not asked about"
         placed, = entries()
-        near(browser.run(f"return {lamp}[0].middles[0]"), hit["place"], 0.01)
-        box = browser.run("const {x, y, width, height} = document.querySelector('#outlines .selected')"
-                          ".getBoundingClientRect(); return [x + width / 2, y + height / 2]")
-        browser.mouse("Pressed", *box)
-        browser.mouse("Moved", box[0] - 20, box[1] + 10, buttons=1)
-        browser.mouse("Moved", box[0] - 30, box[1] + 15, buttons=1)
-        browser.mouse("Released", box[0] - 30, box[1] + 15)
-        browser.until(f"return Math.hypot(...subtract({lamp}[0].middles[0], arguments[0])) > 0.1".replace(
-            "arguments[0]", json.dumps(hit["place"])))
-        near(browser.viewer()["yaw"], before["yaw"], 1e-3)  # what moves is the lamp
+        near(browser.run(f"return {lamp}[0].middles[0]"), place, 0.01)
+        x, y = middle_of(".selected")
+        browser.drag((x, y), (x - 20, y + 10), (x - 30, y + 15))
+        browser.until(f"return Math.hypot(...subtract({lamp}[0].middles[0], arguments[0])) > 0.1", place)
+        near(browser.pose(), before, 1e-3)  # what moves is the lamp
         loaded("page.live.luminaires.state.unsaved")
         moved, = entries()
         kept = [here == there for here, there in zip(moved["position"], placed["position"])]
         assert sum(kept) == 1, (placed, moved)
-        browser.hold("d", 0, "KeyD", modifiers=2)
+        browser.press("d", 2)
         loaded("room.lights.length === 2")
         browser.press("r")
         browser.until(f"return Math.abs({lamp}[1].rotation - 15) < 1e-6")
         browser.press("Delete")
         loaded("room.lights.length === 1")
-        browser.hold("z", 0, "KeyZ", modifiers=2)
+        browser.press("z", 2)
         loaded("room.lights.length === 2")
         # A click on a lamp selects it; elsewhere it measures.
         browser.press("Escape")
         browser.until("return document.querySelector('#outlines .selected') === null")
-        box = browser.run("const {x, y, width, height} = document.querySelector('#outlines polygon')"
-                          ".getBoundingClientRect(); return [x + width / 2, y + height / 2]")
-        browser.mouse("Pressed", *box)
-        browser.mouse("Released", *box)
+        browser.click(*middle_of("polygon"))
         browser.until("return page.live.luminaires.state.selected === 0")
         assert browser.run("return page.points.all.length") == 1
-        browser.mouse("Pressed", 60, 120)
-        browser.mouse("Released", 60, 120)
+        browser.click(60, 120)
         browser.until("return page.points.all.length === 2")
         assert len(entries()) == 2
-        browser.driver.get("about:blank")
+        browser.leave()
 
 
 def test_page(browser, folder):
     scene = page_test.obj_room(folder)
-    with Served(page_test.PHOTILE, scene, *MADE) as served:
-        print(f"the room is there after {browser.visit(served.url):.2f} s")
+    with Served(PHOTILE, scene, *MADE) as served:
+        browser.open(served.url)
         check_first_light(browser)
         check_picture(browser, folder, scene)
         check_lux(browser, folder, scene)
@@ -425,27 +377,11 @@ def test_page(browser, folder):
         check_moods(browser, scene)
         check_two(browser, served.url)
         check_settings(browser)
-        browser.driver.get("about:blank")  # before its server ends
+        browser.leave()
     check_glare(browser, folder)
     check_luminaires(browser, folder)
     check_many_lights(browser, folder)
-    messages = browser.messages()
-    assert not messages, messages
-
-
-def main():
-    if not all(pathlib.Path(file).exists() for file in (page_test.CHROMIUM, page_test.DRIVER)):
-        print("skipped: no chromium with its driver; apt-get install chromium chromium-driver")
-        return 77
-    browser = Browser()
-    try:
-        with tempfile.TemporaryDirectory() as folder:
-            test_page(browser, pathlib.Path(folder))
-    finally:
-        browser.driver.quit()
-    return 0
 
 
 if __name__ == "__main__":
-    page_test.PHOTILE, page_test.SOURCE = sys.argv[2], pathlib.Path(sys.argv[3])
-    sys.exit(main())
+    page_test.main(globals(), Browser)

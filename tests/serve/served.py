@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -17,6 +18,13 @@ def write_hall(folder):
     for name, text in HALL.items():
         (folder / name).write_text(text)
     return folder / "hall.obj"
+
+
+def room_of_gallery(source, folder):
+    """Without lamps, beside a photometric file."""
+    for name in ("sun-and-sky.gltf", "sun-and-sky.bin", "downlight.ies"):
+        shutil.copy(source / "scenes/gallery" / name, folder)
+    return folder / "sun-and-sky.gltf"
 
 
 class Served:
@@ -42,14 +50,20 @@ class Served:
         return self
 
     def __exit__(self, *_):
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGKILL)
+        self.process.kill()
         self.process.wait()
 
+    def interrupt(self):
+        """The exit code after Ctrl-C."""
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(60)
+
+    def room(self):
+        """What its page says of the room."""
+        return json.loads(re.search('id="room">(.*?)</script>', self.request()[2].decode()).group(1))
+
     def connect(self):
-        connection = socket.create_connection((self.host, self.port), timeout=20)
-        connection.settimeout(20)
-        return connection
+        return socket.create_connection((self.host, self.port), timeout=20)
 
     def request(self, what="", method="GET", path=None, host=None, body=None, **headers):
         """Status, headers and body of the answer."""
@@ -86,12 +100,12 @@ class Page:
         self.lines = self.connection.makefile("r")
         assert "200" in self.lines.readline()
 
-    def hear(self, what):
+    def hear(self, what, condition=lambda news: True):
         """Waits for news of this kind."""
         for line in self.lines:
             if line.startswith("data: "):
                 news = json.loads(line[6:])
-                if what in news:
+                if what in news and condition(news[what]):
                     return news[what]
         raise AssertionError(f"no {what}: the server has gone")
 

@@ -94,9 +94,8 @@ inline glm::vec3 random_point(const Scene& scene, std::uint32_t triangle, std::m
 /// Picks triangles in proportion to their areas.
 inline std::discrete_distribution<std::uint32_t> by_area(const Scene& scene) {
   std::vector<double> areas;
-  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t) {
+  for (std::uint32_t t = 0; t < scene.triangle_count(); ++t)
     areas.push_back(triangle_area(scene, t));
-  }
   return {areas.begin(), areas.end()};
 }
 

@@ -25,8 +25,9 @@ With PHOTILE_RENEW_TRANSCRIPT=1 the answers are written anew, to be read in revi
     > box.mtl = b""                     another variation of the case: the files above its first command, anew
     $ photile info box.obj
 
-Of `photile ... | grep WORD|WORD` the lines with one of the words are compared. Variables of the environment stand before `photile`; `\\n` in a word is the end of a line. `...` in an answer
-stands for what depends on the machine. A command that refuses a file takes no more than 256 MiB beside its files.
+Of `photile ... | grep WORD|WORD` the lines with one of the words are compared. Variables of the environment stand before
+`photile`; `\\n` in a word is the end of a line. `...` in an answer stands for what depends on the machine. A command that
+refuses a file takes no more than 256 MiB beside its files.
 """
 
 import json
@@ -174,6 +175,9 @@ def variations(lines):
     """The cases of a transcript, as (title, number of the line, files above the first command, steps)."""
     found, title, common, step = [], "", [], None
     for number, line in enumerate(lines, 1):
+        if line.startswith(("> ", "$ ")) and step.command is not None:
+            step = Step()
+            found[-1][3].append(step)
         if line.startswith("== "):
             title, common, step = line[3:], [], Step()
             found.append((title, number, common, [step]))
@@ -183,16 +187,10 @@ def variations(lines):
             step = Step()
             found.append((title, number, common, [step]))
         elif line.startswith("> "):
-            if step.command is not None:
-                step = Step()
-                found[-1][3].append(step)
             step.files.append((line[2:], []))
         elif line.startswith("| ") or line == "|":
             step.files[-1][1].append(line[2:])
         elif line.startswith("$ "):
-            if step.command is not None:
-                step = Step()
-                found[-1][3].append(step)
             step.command = line[2:]
         elif line and not line.startswith("#"):
             step.answer.append(line)
@@ -208,9 +206,9 @@ def main():
             answers = list(pool.map(lambda case: checked(photile, case[3], case[2]), cases))
         renewed = []
         for (title, number, _, steps), found in zip(cases, answers):
+            renewed += found
+            commands += len(found)
             for step, answer in zip(steps, found):
-                commands += 1
-                renewed.append(answer)
                 if answer != step.answer and not RENEW:
                     failures += 1
                     print(f"{name}:{number}: {title}\n$ {step.command}")

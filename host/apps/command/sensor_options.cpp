@@ -54,11 +54,10 @@ void note_places(const PlaceOptions& options) {
 std::vector<measuring::SensorGrid> grids_at(const PlaceOptions& options, const Scene& scene) {
   std::vector<measuring::SensorGrid> grids;
   for (const auto& file : options.planes) {
-    glm::dvec3 task(0.0);
+    glm::dvec3 task(0.0);  // a point above it, off the table
     for (auto& grid : measuring::read_planes(file)) {
       if (grid.role == measuring::GridRole::task) {
-        const Sensor& sensor = grid.sensors[grid.sensors.size() / 2];
-        task = sensor.position + 0.05 * sensor.normal;  // off a table
+        task = grid.sensors[grid.sensors.size() / 2].position + 0.05 * grid.layout->normal();
       }
       if (grid.role == measuring::GridRole::background) keep_in_room(scene, task, grid);
       if (!grid.sensors.empty()) grids.push_back(std::move(grid));

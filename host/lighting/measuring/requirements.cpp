@@ -33,23 +33,23 @@ double* field_of(Requirement& requirement, std::string_view word) {
   return found == fields.end() ? nullptr : found->second;
 }
 
-// Files that are raw string literals: a heading, then a row a line. Where a cell is empty, nothing
-// is required. docs/reference/targets.md says where rows were confirmed.
-constexpr const char* workplaces =
+// Raw string literals: headings, then a row a line; an empty cell requires nothing. Their sources:
+// docs/reference/targets.md. Tasks with a high risk that need over 150 lux need a tenth of it.
+constexpr const char* tables =
 #include "measuring/en12464_1.csv"
-    ;
-/// A tenth of what a task with a high risk needs is more than 15 lux where that is above 150.
-constexpr const char* emergencies =
 #include "measuring/en1838.csv"
     ;
 
-void append_rows(const char* table, std::vector<Requirement>& rows) {
-  std::istringstream lines(table);
-  std::string heading, line;
-  for (std::getline(lines, heading); std::getline(lines, line);) {
+std::vector<Requirement> read_rows() {
+  std::vector<Requirement> rows;
+  std::istringstream lines(tables);
+  for (std::string heading, line, word, cell; std::getline(lines, line);) {
+    if (line.starts_with("name;")) {
+      heading = line;
+      continue;
+    }
     Requirement& row = rows.emplace_back();
     std::istringstream words(heading), cells(line);
-    std::string word, cell;
     while (std::getline(words, word, ';') && std::getline(cells, cell, ';')) {
       if (word == "name") row.name = cell;
       if (word == "activity") row.what = cell;
@@ -62,6 +62,7 @@ void append_rows(const char* table, std::vector<Requirement>& rows) {
                                                : "EN 12464-1:2021, table {}, required values{}"),
                     row.reference, cell == "confirmed" ? "" : " (not confirmed: check them)");
   }
+  return rows;
 }
 
 /// "office-desk, reception-desk" for "desk": the names that hold a text, or that nearest to it.
@@ -83,13 +84,8 @@ void add(std::vector<Judgement>& all, const GridValues& values, const char* figu
 }  // namespace
 
 std::span<const Requirement> known_requirements() {
-  static const std::vector<Requirement> all = [] {
-    std::vector<Requirement> rows;
-    append_rows(workplaces, rows);
-    append_rows(emergencies, rows);
-    return rows;
-  }();
-  return all;
+  static const std::vector<Requirement> rows = read_rows();
+  return rows;
 }
 
 Requirement parse_requirement(const std::string& text) {

@@ -114,6 +114,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double right_angle_slack = 1e-6;  // cosine between sides
+constexpr double rounding = 1e-3;           // metres that corners may lie beyond them
 
 PointCounts counts_of(const JsonObject& plane, double u, double v) {
   if (plane.has("columns") || plane.has("rows")) {
@@ -173,6 +174,10 @@ SensorGrid grid_of(const JsonObject& plane, const std::string& name, const Outli
   const PointCounts counts = counts_of(plane, u, v);
   if (counts.total() > limits::max_sensors) {
     plane.refuse(fmt::format("{} points; the limit is {}", counts.total(), limits::max_sensors));
+  }
+  for (const glm::dvec3& corner : outline) {
+    const double outside = std::max({-corner.x, -corner.y, corner.x - u, corner.y - v});
+    if (outside > rounding) plane.refuse("'outline' leaves the rectangle of 'u' and 'v'");
   }
   PlaneLayout layout = full_plane(plane.vector("origin"), along_u, along_v, counts);
   std::erase_if(layout.cells, [&](std::uint32_t cell) {

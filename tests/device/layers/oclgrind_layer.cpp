@@ -5,14 +5,15 @@
 // Four faults of its shadow memory make it crash or report what is initialised:
 // - It takes what clEnqueueWriteBuffer writes, and each element that clEnqueueFillBuffer sets, for
 //   all that the buffer has. So a kernel writes here, whose stores it follows well.
-// - It does not see what the host writes into a mapped buffer. So other memory is mapped, and what
-//   it holds is written when it is unmapped.
+// - It does not see what the host writes into a mapped buffer, which is written again, therefore,
+//   when it is unmapped.
 // - A new buffer at a released one's address keeps the shadow of the old, whose size may be
 //   another. So no buffer is released.
 // - What a buffer of the host's memory holds (CL_MEM_USE_HOST_PTR) counts as uninitialised. Kernels
 //   only read such buffers, so that copies do.
 #include <cstring>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "layer.hpp"
@@ -33,8 +34,8 @@ cl_kernel copying(cl_context context) {
 }
 
 CL_API_ENTRY cl_int CL_API_CALL write(cl_command_queue queue, cl_mem buffer, cl_bool, size_t offset,
-                                      size_t bytes, const void* values, cl_uint wait_count,
-                                      const cl_event* wait_list, cl_event* event) {
+                                      size_t bytes, const void* values, cl_uint count,
+                                      const cl_event* list, cl_event* event) {
   cl_context context = nullptr;
   next->clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof context, &context, nullptr);
   cl_kernel kernel = copying(context);
@@ -44,19 +45,18 @@ CL_API_ENTRY cl_int CL_API_CALL write(cl_command_queue queue, cl_mem buffer, cl_
   next->clSetKernelArg(kernel, 0, sizeof source, &source);
   next->clSetKernelArg(kernel, 1, sizeof buffer, &buffer);
   next->clSetKernelArg(kernel, 2, sizeof first, &first);
-  return next->clEnqueueNDRangeKernel(queue, kernel, 1, nullptr, &bytes, nullptr, wait_count,
-                                      wait_list, event);
+  return next->clEnqueueNDRangeKernel(queue, kernel, 1, nullptr, &bytes, nullptr, count, list,
+                                      event);
 }
 
 CL_API_ENTRY cl_int CL_API_CALL fill(cl_command_queue queue, cl_mem buffer, const void* pattern,
                                      size_t pattern_bytes, size_t offset, size_t bytes,
-                                     cl_uint wait_count, const cl_event* wait_list,
-                                     cl_event* event) {
+                                     cl_uint count, const cl_event* list, cl_event* event) {
   std::vector<unsigned char> values(bytes);
   for (size_t i = 0; i < bytes; i += pattern_bytes) {
     std::memcpy(values.data() + i, pattern, pattern_bytes);
   }
-  return write(queue, buffer, CL_TRUE, offset, bytes, values.data(), wait_count, wait_list, event);
+  return write(queue, buffer, CL_TRUE, offset, bytes, values.data(), count, list, event);
 }
 
 CL_API_ENTRY cl_mem CL_API_CALL create(cl_context context, cl_mem_flags flags, size_t bytes,
@@ -67,41 +67,27 @@ CL_API_ENTRY cl_mem CL_API_CALL create(cl_context context, cl_mem_flags flags, s
   return next->clCreateBuffer(context, flags, bytes, host, status);
 }
 
-struct Mapped {
-  std::vector<unsigned char> values;
-  size_t offset;
-};
-/// By what the host was given. Only one thread of a test maps buffers.
-std::map<void*, Mapped> mapped;
+/// Offset and bytes of what is mapped, by what the host was given.
+std::map<void*, std::pair<size_t, size_t>> mapped;
 
 CL_API_ENTRY void* CL_API_CALL map(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
-                                   cl_map_flags flags, size_t offset, size_t bytes,
-                                   cl_uint wait_count, const cl_event* wait_list, cl_event* event,
-                                   cl_int* status) {
-  if (flags == CL_MAP_READ) {
-    return next->clEnqueueMapBuffer(queue, buffer, blocking, flags, offset, bytes, wait_count,
-                                    wait_list, event, status);
-  }
-  std::vector<unsigned char> values(bytes);
-  const cl_int done = next->clEnqueueReadBuffer(queue, buffer, CL_TRUE, offset, bytes,
-                                                values.data(), wait_count, wait_list, event);
-  if (status != nullptr) *status = done;
-  void* const given = values.data();
-  if (done != CL_SUCCESS) return nullptr;
-  mapped[given] = {std::move(values), offset};
+                                   cl_map_flags flags, size_t offset, size_t bytes, cl_uint count,
+                                   const cl_event* list, cl_event* event, cl_int* status) {
+  void* const given = next->clEnqueueMapBuffer(queue, buffer, blocking, flags, offset, bytes, count,
+                                               list, event, status);
+  if (flags != CL_MAP_READ) mapped[given] = {offset, bytes};
   return given;
 }
 
 CL_API_ENTRY cl_int CL_API_CALL unmap(cl_command_queue queue, cl_mem buffer, void* given,
-                                      cl_uint wait_count, const cl_event* wait_list,
-                                      cl_event* event) {
-  const auto found = mapped.extract(given);
-  if (found.empty()) {
-    return next->clEnqueueUnmapMemObject(queue, buffer, given, wait_count, wait_list, event);
-  }
-  const Mapped& written = found.mapped();
-  return write(queue, buffer, CL_TRUE, written.offset, written.values.size(), written.values.data(),
-               wait_count, wait_list, event);
+                                      cl_uint count, const cl_event* list, cl_event* event) {
+  const auto written = mapped.extract(given);
+  const auto [offset, bytes] = written ? written.mapped() : std::pair<size_t, size_t>();
+  const auto* const first = static_cast<const unsigned char*>(given);
+  const std::vector<unsigned char> values(first, first + bytes);
+  const cl_int done = next->clEnqueueUnmapMemObject(queue, buffer, given, count, list, event);
+  if (written) write(queue, buffer, CL_TRUE, offset, bytes, values.data(), 0, nullptr, nullptr);
+  return done;
 }
 
 CL_API_ENTRY cl_int CL_API_CALL keep(cl_mem) { return CL_SUCCESS; }
