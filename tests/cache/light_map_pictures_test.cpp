@@ -386,9 +386,8 @@ TEST_CASE("Sensors in the air of a furnace read the same light everywhere, by ra
 TEST_CASE("Sensors in a furnished room read what estimates at the ends of their rays give") {
   const Scene scene = furnished_room(2);
   std::vector<Sensor> sensors;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 40; ++i)
     sensors.push_back({{0.3 + 0.08 * i, 0.4 + 0.05 * i, 1.2}, {0, 0, 1}});
-  }
   const auto mean_of = [&](LightMapMode mode, double& nodes) {
     const RenderResult result =
         gather(scene, sensors, {.rays = 256}, one_device(), parameters_of(mode));

@@ -12,6 +12,7 @@ import pathlib
 import re
 import shlex
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -127,6 +128,9 @@ def write_inputs(folder):
     for name in ("scene", "house", "hall", "kitchen", "airport", "office", "office-empty", "living-room",
                  "room-with-closed-blinds"):
         shutil.copy(folder / "room.gltf", folder / f"{name}.gltf")
+    text = (folder / "room.gltf").read_bytes()
+    text += b" " * (-len(text) % 4)
+    (folder / "house.glb").write_bytes(struct.pack("<4s4I", b"glTF", 2, 20 + len(text), len(text), 0x4E4F534A) + text)
     (folder / "scenes").symlink_to(SOURCE / "scenes")
     for name in ("er100.ies", "batwing.ies", "panel.ies"):
         shutil.copy(SOURCE / "scenes/office/panel.ies", folder / name)
@@ -138,8 +142,8 @@ def write_inputs(folder):
     grid = {"name": "desks", "origin": [1, 0.75, 3], "u": [1.6, 0, 0], "v": [0, 0, -0.8], "spacing": 0.8}
     lamps = {"name": "panels", "file": "panel.ies", "position": "ceiling", "count": [2, 1], "spacing": [2, 2]}
     moods = {"photile_moods": 1, "moods": {"evening": {"desk_lamp": {"power": 200}, "lamp": {"on": False}}}}
-    for names, content in ((("p.json", "path.json"), path), (("desks.json",), grid), (("office.moods.json",), moods),
-                           (("lamps.json", "four.json"), lamps)):
+    for names, content in ((("p.json", "path.json"), path), (("desks.json", "house.grids.json"), grid),
+                           (("office.moods.json",), moods), (("lamps.json", "four.json"), lamps)):
         for name in names:
             (folder / name).write_text(json.dumps(content))
     (folder / "room.pts").write_text("1 0.75 1 0 1 0\n2 0.75 2 0 1 0\n")

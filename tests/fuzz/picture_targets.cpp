@@ -34,9 +34,8 @@ void check_picture(const LayeredPicture& picture) {
 std::vector<LightChange> changes_of(const LightMix& mix) {
   constexpr std::array values{"x2", "#FFD8A0", "2700K", "50lm", "off", "x1e20", "3W"};
   std::vector<LightChange> changes;
-  for (const MixedLight& light : mix.lights) {
+  for (const MixedLight& light : mix.lights)
     changes.push_back({light.name, values[changes.size() % values.size()]});
-  }
   return changes;
 }
 

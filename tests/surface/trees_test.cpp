@@ -146,9 +146,8 @@ TEST_CASE("pieces in one point, or ever farther apart, do not make the tree deep
   std::vector<surface::SurfacePiece> same(5000, piece_at(glm::vec3(1.0f), glm::vec3(0.1f)));
   CHECK(check_tree(surface::build_surface_tree(same), same) <= PHOTILE_SURFACE_STACK);
   std::vector<surface::SurfacePiece> apart;
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < 5000; ++i)
     apart.push_back(piece_at(glm::vec3(std::ldexp(1.0f, i % 200 - 100), 0, 0), glm::vec3(0.0f)));
-  }
   CHECK(check_tree(surface::build_surface_tree(apart), apart) <= PHOTILE_SURFACE_STACK);
 }
 

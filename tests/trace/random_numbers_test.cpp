@@ -275,9 +275,8 @@ TEST_CASE("A radix sort is a stable sort") {
   CAPTURE(count, bits);
   std::mt19937_64 random(count + static_cast<std::size_t>(bits));
   std::vector<Item> items;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; ++i)
     items.push_back({random() >> (64 - bits), static_cast<std::uint32_t>(i)});
-  }
   std::vector<Item> expected = items;
   std::stable_sort(expected.begin(), expected.end(),
                    [](const Item& a, const Item& b) { return a.key < b.key; });

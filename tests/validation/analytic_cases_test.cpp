@@ -97,9 +97,8 @@ TEST_CASE("photon maps read what closed forms say") {
 /// Sixteen values of this mean whose standard deviation is `scatter`.
 std::vector<double> values(double mean, double scatter) {
   std::vector<double> result;
-  for (int i = 0; i < 16; ++i) {
+  for (int i = 0; i < 16; ++i)
     result.push_back(mean + (i % 2 == 0 ? 1 : -1) * scatter * std::sqrt(15.0 / 16.0));
-  }
   return result;
 }
 
