@@ -128,6 +128,41 @@ TEST_CASE("a point inside tells another room, and a camera outside the one that 
   CHECK(bounds_of(working_plane_grid(scene, plane)).first.x == Approx(14.125).margin(1e-3));
 }
 
+/// Two rooms of 6 x 4 m under one gable roof, whose height is 3 m at x = 3 and 0 at x = 0 and 6,
+/// with a door of 1 x 2 m between them at z = 4; y is up.
+Scene attic() {
+  test::SceneBuilder builder("attic");
+  const auto white = builder.add(test::diffuse(glm::vec3(0.5f)));
+  builder.grid({0, 0, 0}, {0, 0, 8}, {6, 0, 0}, 4, white);
+  builder.grid({0, 0, 0}, {3, 3, 0}, {0, 0, 8}, 2, white);
+  builder.grid({3, 3, 0}, {3, -3, 0}, {0, 0, 8}, 2, white);
+  for (const float z : {0.0f, 8.0f}) builder.triangle({0, 0, z}, {6, 0, z}, {3, 3, z}, white);
+  builder.triangle({0, 0, 4}, {2.5f, 0, 4}, {2.5f, 2.5f, 4}, white);
+  builder.triangle({3.5f, 0, 4}, {6, 0, 4}, {3.5f, 2.5f, 4}, white);
+  builder.quad({2.5f, 2, 4}, {3.5f, 2, 4}, {3.5f, 2.5f, 4}, {2.5f, 2.5f, 4}, white);
+  builder.triangle({2.5f, 2.5f, 4}, {3.5f, 2.5f, 4}, {3, 3, 4}, white);
+  builder.add(test::point_light("lamp", {3, 2, 2}));
+  return builder.build();
+}
+
+TEST_CASE("a plane in an attic reaches to where the slopes come down to it") {
+  const auto [text, height] = GENERATE(
+      table<const char*, double>({{"floor+0.75", 0.75}, {"floor+1.5", 1.5}, {"2.25", 2.25}}));
+  WorkingPlane plane = plane_of(text, 0);
+  plane.inside = glm::dvec3(3, 1.2, 2);
+  plane.spacing = 0.25;
+  SensorGrid grid = working_plane_grid(attic(), plane);
+  REQUIRE(grid.layout);
+  CHECK(leave_out_furniture(attic(), 0, grid, plane.inside) == 0);
+  CHECK(grid.layout->origin.x == Approx(height).margin(0.005));
+  CHECK(glm::length(grid.layout->u) == Approx(6 - 2 * height).margin(0.01));
+  CHECK(glm::length(grid.layout->v) == Approx(4).margin(0.01));
+  CHECK(double(grid.sensors.size()) == Approx((6 - 2 * height) * 4 * 16));
+  const auto room = room_size(attic(), plane.inside);
+  REQUIRE(room);
+  CHECK(room->area == Approx(24).epsilon(0.01));
+}
+
 TEST_CASE("the number of points is that of EN 12464-1, table A.1") {
   const auto [side, points] =
       GENERATE(table<double, int>({{1, 5}, {2, 6}, {5, 8}, {10, 10}, {100, 20}}));
@@ -159,13 +194,10 @@ TEST_CASE("the floor is the room's, not the slab's underside, the table or the c
   CHECK(grid.layout->columns == 5);
   CHECK(grid.layout->rows == 8);
   REQUIRE(grid.sensors.size() == 40);
-  glm::dvec3 low(1e9), high(-1e9);
-  for (const Sensor& sensor : grid.sensors) {
-    CHECK(sensor.position.y == Approx(0.8));
-    CHECK(sensor.normal == glm::dvec3(0, 1, 0));
-    low = glm::min(low, sensor.position);
-    high = glm::max(high, sensor.position);
-  }
+  for (const Sensor& sensor : grid.sensors) CHECK(sensor.normal == glm::dvec3(0, 1, 0));
+  const auto [low, high] = bounds_of(grid);
+  CHECK(low.y == Approx(0.8));
+  CHECK(high.y == Approx(0.8));
   CHECK(low.x == Approx(0.8));
   CHECK(high.x == Approx(3.2));
   CHECK(low.z == Approx(0.5 + 0.3125));

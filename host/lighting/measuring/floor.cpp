@@ -23,6 +23,8 @@ constexpr int most_surfaces_below = 1000;
 constexpr double least_share = 0.5;      // of the widest level
 constexpr std::uint32_t samples = 8192;  // points whose headroom is looked at
 constexpr double plan_pixels = 1024;     // along the longer side
+constexpr double below_slope = 2.5;      // cells of a room: a tenth of its height
+constexpr double above_plane = 2e-3;     // metres
 
 /// A horizontal triangle.
 struct Piece {
@@ -155,8 +157,88 @@ Floor find_floor(const RayScene& rays, const trace::PlanAxes& axes, const trace:
   return floor;
 }
 
+RoomAtHeight::RoomAtHeight(const RayScene& rays, const trace::PlanAxes& axes,
+                           const trace::Room& room, double height)
+    : rays_(&rays),
+      axes_(axes),
+      side_(std::sqrt(room.cell_area())),
+      low_(room.low()),
+      high_(room.high()) {
+  const trace::FlushDenormals flush_denormals;
+  const double least = height + above_plane, most = std::max(least, room.cut_height());
+  std::vector<Cell> next;
+  // Where nothing is above a cell, it is outside.
+  const auto add = [&](const Cell& cell, double cut) {
+    const glm::vec3 up(axes.up);
+    const auto hit = trace::intersect(rays, glm::vec3(middle_of(cell, cut)), up);
+    if (!hit) return;
+    const auto ceiling = trace::surface_hit(rays.scene(), *hit, up);
+    const double above = glm::dot(glm::dvec3(ceiling.position), axes.up);
+    if (above > cut + trace::Room::most_height) return;
+    const bool is_level = std::abs(glm::dot(glm::dvec3(ceiling.normal), axes.up)) > steepest_cosine;
+    cells_.emplace(cell, is_level ? cut : std::clamp(above - below_slope * side_, least, most));
+    next.push_back(cell);
+  };
+  const std::vector<glm::dvec3> positions = room.positions();
+  first_ = axes.plan(positions.front());
+  for (const glm::dvec3& position : positions) {
+    const glm::ivec2 cell(glm::round((axes.plan(position) - first_) / side_));
+    add({cell.x, cell.y}, room.cut_height());
+  }
+  constexpr std::array<Cell, 4> steps{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  while (!next.empty()) {
+    const Cell cell = next.back();
+    next.pop_back();
+    const double cut = cells_.at(cell);
+    const glm::dvec3 from = middle_of(cell, cut);
+    for (const auto& [right, ahead] : steps) {
+      const Cell to{cell.first + right, cell.second + ahead};
+      const auto wall =
+          trace::intersect(rays, glm::vec3(from), glm::vec3((middle_of(to, cut) - from) / side_));
+      const glm::dvec3 end = wall ? trace::position_of(rays.scene(), *wall) : from;
+      if (wall && glm::distance(end, from) <= side_) {
+        low_ = glm::min(low_, axes.plan(end));
+        high_ = glm::max(high_, axes.plan(end));
+      } else if (!cells_.contains(to)) {
+        add(to, cut);
+      }
+    }
+  }
+}
+
+glm::dvec3 RoomAtHeight::middle_of(const Cell& cell, double height) const {
+  const glm::dvec2 plan = first_ + side_ * glm::dvec2(cell.first, cell.second);
+  return plan.x * axes_.right + plan.y * axes_.ahead + height * axes_.up;
+}
+
+bool RoomAtHeight::holds(const glm::dvec2& plan) const {
+  constexpr double border_slack = 0.01;  // of a cell: a wall belongs to the room before it
+  const glm::ivec2 nearest(glm::round((plan - first_) / side_));
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) {
+      const auto cell = cells_.find({nearest.x + x, nearest.y + y});
+      if (cell == cells_.end()) continue;
+      const glm::dvec3 from = middle_of(cell->first, cell->second);
+      const glm::dvec2 way = plan - axes_.plan(from);
+      const double part =
+          std::max(0.0, 1 - border_slack * side_ / std::max(glm::length(way), 1e-9));
+      const glm::dvec3 to = from + part * (way.x * axes_.right + way.y * axes_.ahead);
+      if (!trace::occluded(*rays_, glm::vec3(from), glm::vec3(to))) return true;
+    }
+  }
+  return false;
+}
+
+double RoomAtHeight::area() const {
+  // Cells of which a part lies in the room are not counted: only their share of the rectangle is.
+  const glm::dvec2 counts =
+      glm::floor((high_ - first_) / side_) - glm::ceil((low_ - first_) / side_) + 1.0;
+  const glm::dvec2 sides = high_ - low_;
+  return static_cast<double>(cells_.size()) / (counts.x * counts.y) * sides.x * sides.y;
+}
+
 FloorPlan::FloorPlan(const Scene& scene, const Floor& floor, const trace::PlanAxes& axes,
-                     const trace::Room* room)
+                     const RoomAtHeight* room)
     : room_(room) {
   std::vector<std::array<glm::dvec2, 3>> plans;
   low_ = glm::dvec2(HUGE_VAL);

@@ -1,9 +1,11 @@
-// Where the floor of a room is.
+// Where the floor of a room is, and how far the room reaches at a height above it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "photile/scene.hpp"
@@ -22,12 +24,40 @@ struct Floor {
 /// The floor of `room`, or of the whole scene where that is null.
 Floor find_floor(const RayScene& rays, const trace::PlanAxes& axes, const trace::Room* room);
 
+/// What a horizontal plane has of a room: all below the room's cut, and what sloped ceilings cover
+/// beside that, down to the plane. There the cut follows them, a tenth of the room's height below.
+class RoomAtHeight {
+ public:
+  ///   height   along `up`, metres
+  /// The rays are kept.
+  RoomAtHeight(const RayScene& rays, const trace::PlanAxes& axes, const trace::Room& room,
+               double height);
+
+  /// Corners of the upright rectangle around it.
+  const glm::dvec2& low() const { return low_; }
+  const glm::dvec2& high() const { return high_; }
+  bool holds(const glm::dvec2& plan) const;
+  double area() const;  ///< m2
+
+ private:
+  using Cell = std::pair<int, int>;  ///< columns to the right, rows ahead
+
+  glm::dvec3 middle_of(const Cell& cell, double height) const;
+
+  const RayScene* rays_;
+  trace::PlanAxes axes_;
+  glm::dvec2 first_;              ///< the middle of the cell {0, 0}
+  double side_;                   ///< of a cell, metres
+  std::map<Cell, double> cells_;  ///< the height of the cut in each
+  glm::dvec2 low_, high_;
+};
+
 /// The floor as seen from above.
 class FloorPlan {
  public:
   /// `room` is null or the part of the floor that counts; it is kept.
   FloorPlan(const Scene& scene, const Floor& floor, const trace::PlanAxes& axes,
-            const trace::Room* room);
+            const RoomAtHeight* room);
 
   const glm::dvec2& low() const { return low_; }
   const glm::dvec2& high() const { return high_; }
@@ -42,7 +72,7 @@ class FloorPlan {
   double pixel_ = 1;  ///< metres
   int width_ = 0, height_ = 0;
   std::vector<bool> covered_;  ///< width x height
-  const trace::Room* room_ = nullptr;
+  const RoomAtHeight* room_ = nullptr;
 };
 
 }  // namespace photile::measuring

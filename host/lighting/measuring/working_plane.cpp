@@ -62,7 +62,11 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
         "{}: no floor found with {} m free above it; give points with --points or --grid",
         scene.source.string(), least_room));
   }
-  const FloorPlan plan(scene, floor, axes, room ? &*room : nullptr);
+  const double height = plane.above_floor ? floor.height + plane.height
+                                          : plane.height - glm::dot(scene.origin, axes.up);
+  std::optional<RoomAtHeight> part;
+  if (room) part.emplace(rays, axes, *room, height);
+  const FloorPlan plan(scene, floor, axes, part ? &*part : nullptr);
   const glm::dvec2 low = plan.low() + plane.wall_band, high = plan.high() - plane.wall_band;
   if (!(high.x > low.x) || !(high.y > low.y)) {
     throw InputError(fmt::format(
@@ -71,8 +75,6 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
         plan.high().y - plan.low().y));
   }
   const glm::dvec2 size = high - low;
-  const double height = plane.above_floor ? floor.height + plane.height
-                                          : plane.height - glm::dot(scene.origin, axes.up);
   PlaneLayout layout = layout_of(low.x * axes.right + low.y * axes.ahead + height * axes.up,
                                  size.x * axes.right, size.y * axes.ahead, plane);
   std::erase_if(layout.cells, [&](std::uint32_t cell) {
@@ -99,27 +101,28 @@ void keep_in_room(const Scene& scene, const glm::dvec3& place, SensorGrid& grid)
   const auto room = trace::Room::around(rays, axes, position_in_scene(scene, place));
   if (!room) return;
   PlaneLayout layout = *grid.layout;
+  const glm::dvec3 origin = position_in_scene(scene, layout.origin);
+  const RoomAtHeight part(rays, axes, *room, glm::dot(origin, axes.up));
   std::erase_if(layout.cells, [&](std::uint32_t cell) {
-    return !room->holds(axes.plan(position_in_scene(scene, layout.middle_of(cell))));
+    return !part.holds(axes.plan(position_in_scene(scene, layout.middle_of(cell))));
   });
   // The rectangle around what is left.
   const auto columns = static_cast<std::uint32_t>(layout.columns);
-  std::uint32_t left = columns, right = 0, low = static_cast<std::uint32_t>(layout.rows), high = 0;
+  glm::uvec2 low(columns, layout.rows), high(0);
   for (const std::uint32_t cell : layout.cells) {
-    left = std::min(left, cell % columns);
-    right = std::max(right, cell % columns);
-    low = std::min(low, cell / columns);
-    high = std::max(high, cell / columns);
+    low = glm::min(low, glm::uvec2(cell % columns, cell / columns));
+    high = glm::max(high, glm::uvec2(cell % columns, cell / columns));
   }
   if (!layout.cells.empty()) {
-    const glm::dvec3 u = layout.u / double(layout.columns), v = layout.v / double(layout.rows);
-    layout.columns = static_cast<int>(right - left + 1);
-    layout.rows = static_cast<int>(high - low + 1);
-    layout.origin += double(left) * u + double(low) * v;
-    layout.u = double(layout.columns) * u;
-    layout.v = double(layout.rows) * v;
+    const glm::uvec2 counts = high - low + 1u;
+    const PlaneLayout all = layout;
+    layout.columns = static_cast<int>(counts.x);
+    layout.rows = static_cast<int>(counts.y);
+    layout.origin = all.at(glm::dvec2(low));
+    layout.u *= double(counts.x) / all.columns;
+    layout.v *= double(counts.y) / all.rows;
     for (std::uint32_t& cell : layout.cells) {
-      cell = (cell / columns - low) * (right - left + 1) + cell % columns - left;
+      cell = (cell / columns - low.y) * counts.x + cell % columns - low.x;
     }
   }
   const GridRole role = grid.role;
@@ -132,6 +135,7 @@ namespace {
 constexpr double before_surface = 1e-3;  // metres that sensors lie before it
 constexpr double surface_slack = 0.05;   // metres that a wall may lie before or behind its plane
 constexpr double probed_from = 0.3;      // metres before a wall from where it is looked for
+constexpr double above_floor = 0.01;     // metres at which a room's size is taken
 constexpr int sides = 4;
 
 /// Metres to the first surface and whether it is glass.
@@ -210,18 +214,9 @@ std::optional<RoomSize> size_of(const RayScene& rays, const trace::PlanAxes& axe
   const Floor floor = find_floor(rays, axes, &room);
   if (floor.triangles.empty()) return std::nullopt;
   const double in_world = floor.height + glm::dot(rays.scene().origin, axes.up);
-  // Cells of which a part lies in the room are not counted: only their share of the rectangle is.
-  const std::vector<glm::dvec3> cells = room.positions();
-  glm::dvec2 low = axes.plan(cells.front()), high = low;
-  for (const glm::dvec3& cell : cells) {
-    low = glm::min(low, axes.plan(cell));
-    high = glm::max(high, axes.plan(cell));
-  }
-  const glm::dvec2 counts = glm::round((high - low) / std::sqrt(room.cell_area())) + 1.0;
-  const double share = static_cast<double>(cells.size()) / (counts.x * counts.y);
-  const glm::dvec2 sides = room.high() - room.low();
-  return RoomSize{share * sides.x * sides.y, ceiling_height(rays, axes, room) - floor.height,
-                  in_world, sides};
+  const RoomAtHeight plan(rays, axes, room, floor.height + above_floor);
+  return RoomSize{plan.area(), ceiling_height(rays, axes, room) - floor.height, in_world,
+                  plan.high() - plan.low()};
 }
 
 }  // namespace

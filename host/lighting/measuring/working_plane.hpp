@@ -25,7 +25,7 @@ struct WorkingPlane {
 
 /// The room that grids are laid in, as planners describe it.
 struct RoomSize {
-  double area = 0;        ///< m2 of its plan, just below its ceiling
+  double area = 0;        ///< m2 of its plan, with what lies under slopes
   double height = 0;      ///< metres from its floor to most of its ceiling
   double floor = 0;       ///< height of its floor in the file's world
   glm::dvec2 sides{0.0};  ///< metres of the upright rectangle around its plan
