@@ -177,6 +177,13 @@ void Converter::set_opaque(const tinygltf::Material& source, MetallicRoughness m
   model.texture =
       surface_texture(reference_of(pbr.metallicRoughnessTexture), pictures::TextureContent::data,
                       "the metallic and roughness factor");
+  if (model.metallic > 0 && model.base_color != glm::dvec3(0.0) &&
+      source.values.count("metallicFactor") == 0 &&
+      !reference_of(pbr.metallicRoughnessTexture).given()) {
+    warn(
+        "the file does not say whether it is a metal, and by the default of glTF it is; where it "
+        "is none, write \"metallicFactor\": 0 into its pbrMetallicRoughness");
+  }
   if (const auto* specular = find_extension(source.extensions, "KHR_materials_specular")) {
     model.specular_texture = surface_texture(reference_of(*specular, "specularTexture"),
                                              pictures::TextureContent::data, "the specular factor");
