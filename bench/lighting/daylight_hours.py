@@ -55,7 +55,7 @@ def main():
                     truth.append([float(row["lux"]) for row in csv.DictReader(table)])
             for label, options in SETTINGS:
                 bee = folder / label.replace("`", "").replace(",", "").replace(" ", "_")
-                subprocess.run([given.photile, "daylight", *base, "--weather", weather, "--ground", "0", "--honeybee", bee,
+                subprocess.run([given.photile, "daylight", *base, "--weather", weather, "--set", "ground=0", "--honeybee", bee,
                                 "--rays", "64" if given.quick else "4096", *options], check=True, stdout=subprocess.PIPE)
                 up = [int(float(hour)) for hour in (bee / "sun-up-hours.txt").read_text().split()]
                 year = [[float(word) for word in line.split()] for line in (bee / "room.ill").read_text().splitlines()]

@@ -147,9 +147,9 @@ TEST_CASE("blinds close by the hour, as a scene of their own says") {
   const FileFolder folder;
   const std::string scene = write_open_box(folder);
   folder.write("closed.obj", box_obj());
-  const Outcome outcome =
-      succeed(year_of(folder, scene, "--blinds", folder / "closed.obj", "--days mon-fri -o",
-                      folder / "a.csv", "-o", folder / "a.json", "--honeybee", folder / "bee"));
+  const Outcome outcome = succeed(year_of(folder, scene, "--blinds", folder / "closed.obj",
+                                          "--days mon-fri --set ground=0.3 -o", folder / "a.csv",
+                                          "-o", folder / "a.json", "--honeybee", folder / "bee"));
   CHECK_THAT(outcome.output, Contains("blinds closed"));
   const auto grid = folder.json("a.json").at(0);
   CHECK(grid["occupied_hours"] == 2600);
@@ -164,7 +164,7 @@ TEST_CASE("blinds close by the hour, as a scene of their own says") {
   for (const std::size_t state : grid["blinds"]["state_of_hour"]) closed += state;
   CHECK(closed == grid["blinds"]["closed_hours"]);
   CHECK_THAT(folder.read("a.csv"),
-             Contains(",blinds,ground_reflectance\n") && Contains(",closed,0.2\n"));
+             Contains(",blinds,ground_reflectance\n") && Contains(",closed,0.3\n"));
   CHECK(folder.json("bee/states_schedule.json")["blinds"]["schedule"] ==
         grid["blinds"]["state_of_hour"]);
   CHECK(!folder.read("bee/blinds/1_blinds/direct/working_plane.npy").empty());

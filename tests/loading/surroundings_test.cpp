@@ -243,6 +243,13 @@ TEST_CASE("a sky or a sun lights ground that reflects a fifth, unless another is
   options.ground = 0.2;
   options.sun = Sun{0, -30, 20'000};
   CHECK(ground_under(options) == 0);
+  // Patches have 1 cd/m2 until an hour is chosen, which is scaled to a ground of 0.2.
+  options.sun.reset();
+  options.sky = Sky{SkyKind::patches, 0, 0, 0, 145};
+  for (const double reflectance : {0.2, 0.5, 0.0}) {
+    options.ground = reflectance;
+    CHECK(ground_under(options) == Approx(reflectance / 0.2));
+  }
 }
 
 TEST_CASE("ground below the horizon sends back its share of the light of sky and sun") {

@@ -235,7 +235,7 @@ class Generator : CommandBuilder {
     if (dice_.chance(0.9)) output("-o", dice_.one_of({"year.csv", "year.json"}));
     if (dice_.chance(0.2)) output("--honeybee", "hours");
     maybe(0.3, {"--suns", dice_.one_of({"rays", "patches"})});
-    maybe(0.1, {"--ground", dice_.one_of({"0", "1", "1.1"})});
+    maybe(0.1, {"--set", dice_.one_of({"ground=0", "ground=1", "ground=1.1"})});
     maybe(0.2, {"--occupied", dice_.one_of({"8-18", "0-24", "18-8", "x"})});
     maybe(0.2, {"--lamps-to", dice_.one_of({"500", "0"})});
     maybe(0.1, {"--lux", dice_.one_of({"300", "-1", "1e30"})});

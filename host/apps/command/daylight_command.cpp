@@ -330,9 +330,6 @@ void add_year(CLI::App& command, DaylightOptions& options) {
            "patches, as in Radiance's two-phase method",
            CLI::IsMember({"rays", "patches"}))
       ->capture_default_str();
-  year.add("--ground", options.render.load.ground, "X",
-           "reflectance of the ground that surrounds the scene", number_between(0, 1))
-      ->capture_default_str();
   year.add("--lux", options.asked.target_lux, "LUX",
            "illuminance that daylight has to provide (DA, sDA), lux", positive_number())
       ->capture_default_str();

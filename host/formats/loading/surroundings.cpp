@@ -283,17 +283,15 @@ void add_sky(const SkyLight& sky, const SceneLoadOptions& options, Scene& scene)
 }
 
 void add_ground(const SkySituationLights& lights, const SceneLoadOptions& options, Scene& scene) {
-  const bool as_default = options.ground == defaults::ground_reflectance;
+  const double of_default = options.ground / defaults::ground_reflectance;
   if (lights.sky && lights.sky->kind == SkyKind::patches) {
-    if (as_default) return;
-    throw UsageError(
-        fmt::format("ground: a sky of patches has its own ground of reflectance {:g} below the "
-                    "horizon; leave out ground, or turn it off by --light ground=off",
-                    defaults::ground_reflectance));
+    scene.lights.back().power *= of_default;
+    if (of_default == 0) scene.lights.pop_back();
+    return;
   }
   double lux = lights.sky ? lights.sky->illuminance : 0.0;
   if (lights.sun) lux += lights.sun->illuminance * std::max(0.0, direction_to(*lights.sun).y);
-  if (options.ground == 0 || (as_default && !(lux > 0))) return;
+  if (options.ground == 0 || (of_default == 1 && !(lux > 0))) return;
   if (!(lux > 0)) {
     throw UsageError("ground: nothing lights it; give --sky or --sun, or leave out ground");
   }

@@ -89,7 +89,8 @@ std::size_t add_sky_lights(const std::vector<SkyPatch>& patches, double north, S
 void add_ground_light(double radiance, Scene& scene);
 
 /// Luminances of these lights, cd/m2, the ground last: those of a Perez sky, the sun in the four
-/// patches nearest to it, and a ground of defaults::ground_reflectance that both light.
+/// patches nearest to it, and a ground of defaults::ground_reflectance that both light. The light
+/// of another ground differs from it in power.
 ///   day   of the year, from 1
 std::vector<double> sky_luminances(const std::vector<SkyPatch>& patches, const SunPosition& sun,
                                    const SkyIrradiance& irradiance, int day);
