@@ -87,10 +87,11 @@ struct ToneMapping {
   std::array<float, 3> white = {1, 1, 1};
 };
 
-/// Factor that brings the log-average luminance of R, G, B to 0.36 of white, over pixels of finite
-/// positive luminance within a factor of 20 of their median (Reinhard et al., "Photographic tone
-/// reproduction for digital images", 2002, without the outliers: lights and black backgrounds). 1
-/// where there is no such pixel. Errors: InputError where there is no R, G or B.
+/// Factor that brings the log-average luminance of R, G, B to 0.36 of white (Reinhard et al.,
+/// "Photographic tone reproduction for digital images", 2002), or less, so that at most a tenth of
+/// all surfaces exceed 2.5 times white. Black, dark corners and lights do not count, lights up to a
+/// tenth of the picture (docs/reference/pictures.md). 1 where no luminance is finite and positive.
+/// Errors: InputError where there is no R, G or B.
 double automatic_exposure(const Image& scene_referred);
 /// The same of several pictures together.
 double automatic_exposure(std::span<const Image* const> scene_referred);

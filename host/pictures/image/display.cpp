@@ -121,14 +121,14 @@ glm::dvec3 standard(const glm::dvec3& rgb) {
 
 /// DisplayView::neutral of values from 0 to `brightest`. Names are those of the specification.
 glm::dvec3 neutral(const glm::dvec3& rgb) {
-  const auto& [key, outliers, f90, ks, kd, least_of_light] = display_transform;
+  constexpr double f90 = display_transform.f90, ks = display_transform.ks;
   const double x = std::min({rgb.r, rgb.g, rgb.b});
   const double f = x <= 2 * f90 ? x - x * x / (4 * f90) : f90;
   const glm::dvec3 base = rgb - f;
   const double p = std::max({base.r, base.g, base.b});
   if (p <= ks) return base;
   const double pn = 1 - (1 - ks) * (1 - ks) / (p + 1 - 2 * ks);
-  const double g = 1 / (kd * (p - pn) + 1);
+  const double g = 1 / (display_transform.kd * (p - pn) + 1);
   return glm::mix(glm::dvec3(pn), base * (pn / p), g);
 }
 
@@ -191,19 +191,24 @@ double automatic_exposure(std::span<const Image* const> scene_referred) {
     }
   }
   if (luminances.empty()) return 1.0;
-  const auto middle = luminances.begin() + static_cast<std::ptrdiff_t>(luminances.size() / 2);
-  std::nth_element(luminances.begin(), middle, luminances.end());
-  const double median = *middle;
-
-  const double outlier_factor = display_transform.outlier_factor;
+  std::sort(luminances.begin(), luminances.end());
+  const auto share_of = [](auto first, auto last) {
+    return static_cast<std::ptrdiff_t>(display_transform.light_share *
+                                       static_cast<double>(last - first));
+  };
+  const double outliers = display_transform.outlier_factor;
+  const auto end = luminances.end();
+  const double bright = end[-1 - share_of(luminances.begin(), end)];
+  const auto seen =
+      std::lower_bound(luminances.begin(), end, bright / display_transform.black_factor);
+  const double median = seen[(end - seen) / 2];
+  const auto first = std::lower_bound(seen, end, median / outliers);
+  const auto lights = std::upper_bound(first, end, median * outliers);
+  const auto last = std::max(lights, end - share_of(seen, end));
   double sum_of_logs = 0.0;
-  std::size_t count = 0;
-  for (const double value : luminances) {
-    if (value > outlier_factor * median || value < median / outlier_factor) continue;
-    sum_of_logs += std::log(value);
-    ++count;
-  }
-  return display_transform.key / std::exp(sum_of_logs / static_cast<double>(count));
+  std::for_each(first, last, [&](double value) { sum_of_logs += std::log(value); });
+  return std::min(display_transform.key / std::exp(sum_of_logs / static_cast<double>(last - first)),
+                  display_transform.highlights / lights[-1 - share_of(first, lights)]);
 }
 
 ToneMapping with_one_exposure(ToneMapping parameters,

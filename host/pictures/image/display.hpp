@@ -21,8 +21,14 @@ struct DisplayTransform {
   /// ceilings reflect more than half, and the neutral view takes 0.04 off all.
   double key = 0.36;
   /// Luminances farther than this factor from the median say nothing about the room: a light seen
-  /// directly, a black background.
-  double outlier_factor = 20.0;
+  /// directly, a dark corner. Only so large a share of the picture is taken for lights.
+  double outlier_factor = 20, light_share = 0.1;
+  /// What is darker than the brightest pixels of that share by this factor is black: nothing, or
+  /// faces that next to no light reaches.
+  double black_factor = 1000;
+  /// Multiples of white that only the same share of what is no light may exceed, as at night walls
+  /// near a lamp do: from there on the neutral view shows no shape.
+  double highlights = 2.5;
   double f90 = 0.04, ks = 0.8 - f90, kd = 0.15;
   /// Multiples of white from which on something beside a pixel is a lamp or a window, whose border
   /// is mixed as it is displayed: highlights are seldom as bright.

@@ -3,17 +3,23 @@
 /// Factor that brings the log-average luminance to the display's key, without lamps and black: the
 /// rule of automatic_exposure in host/pictures/image/display.cpp.
 function automaticExposure(radiance) {
+  const {key, outliers, share, black, highlights} = room.display;
   const luminances = [];
   for (let i = 0; i < radiance.length; i += 3) {
     const value = luminanceOf([radiance[i], radiance[i + 1], radiance[i + 2]]);
     if (value > 0 && Number.isFinite(value)) luminances.push(value);
   }
   if (luminances.length === 0) return 1;
-  const median = luminances.sort((a, b) => a - b)[Math.floor(luminances.length / 2)];
-  const {key, outliers} = room.display;
-  const counted = luminances.filter((value) => value <= outliers * median &&
-                                               value >= median / outliers);
-  return key / Math.exp(counted.reduce((sum, value) => sum + Math.log(value), 0) / counted.length);
+  luminances.sort((a, b) => a - b);
+  const ofShare = (list) => Math.floor(share * list.length);
+  const least = luminances.at(-1 - ofShare(luminances)) / black;
+  const seen = luminances.filter((value) => value >= least);
+  const median = seen[Math.floor(seen.length / 2)];
+  const lit = seen.filter((value) => value >= median / outliers);
+  const surfaces = lit.filter((value) => value <= outliers * median);
+  const counted = lit.slice(0, Math.max(surfaces.length, lit.length - ofShare(seen)));
+  const mean = counted.reduce((sum, value) => sum + Math.log(value), 0) / counted.length;
+  return Math.min(key / Math.exp(mean), highlights / surfaces.at(-1 - ofShare(surfaces)));
 }
 
 const areNumbers = (list, count) => list.length === count &&
