@@ -140,7 +140,7 @@ def errors():
             check_kept(picture, arguments)
         # Where one rank alone fails, the others do not wait for it.
         alone = "test $OMPI_COMM_WORLD_RANK = 1 && set -- \"$@\" --device nobody; exec \"$0\" \"$@\""
-        done = launch([mpiexec, "-n", 3, "sh", "-c", alone, photile, *render], timeout=60)
+        done = launch([mpiexec, "-n", 3, "sh", "-c", alone, photile, *render], timeout=600)
         lines = error_lines(done.stderr)
         check(done.returncode == 4 and len(lines) == 1 and "nobody" in lines[0],
               f"a rank without a device: {done.returncode}, {done.stderr}")
@@ -210,7 +210,7 @@ def different():
     for first, other in runs:
         with tempfile.TemporaryDirectory() as name:
             both = [mpiexec, "-n", 1, photile, *first, ":", "-n", 1, photile, *other]
-            done = launch(both, cwd=name, timeout=120)
+            done = launch(both, cwd=name, timeout=600)
             check(done.returncode == 2, f"{other}: ended with {done.returncode}: {done.stderr}")
             check("ranks 1 and 0" in done.stderr and len(error_lines(done.stderr)) == 1, f"{other}: {done.stderr}")
             check(os.listdir(name) == [], f"{other}: left {os.listdir(name)}")
@@ -240,7 +240,7 @@ def disturbed(picture, arguments, disturb, **settings):
     time.sleep(1)
     ranks_of_job = children_of(job.pid)
     disturb(job, ranks_of_job)
-    _, told = job.communicate(timeout=60)
+    _, told = job.communicate(timeout=600)
     patience = time.time() + 10
     while any(pathlib.Path(f"/proc/{rank}").exists() for rank in ranks_of_job):
         check(time.time() < patience, f"ranks are left: {told}")

@@ -80,7 +80,7 @@ def opened(photile, scene, *options):
     log = scene.parent.parent / "calls"
     command = ["strace", "-f", "-y", "-s", "4096", "-e", "trace=open,openat,openat2,creat", "-o", log,
                photile, "info", scene, *options]
-    done = subprocess.run(command, capture_output=True, timeout=60, check=False)
+    done = subprocess.run(command, capture_output=True, timeout=600, check=False)
     if done.returncode not in (0, 1, 2, 3):
         fail(f"{scene.name}: exit code {done.returncode}: {done.stderr.decode()}")
     # The C library looks for the stack of a process in its own /proc/self/maps.

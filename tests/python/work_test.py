@@ -76,7 +76,7 @@ def interrupted(program, seconds):
         assert process.stdout.readline() == "ready\n"
         time.sleep(seconds)
         process.send_signal(signal.SIGINT)
-        return *process.communicate(timeout=60), process.returncode
+        return *process.communicate(timeout=600), process.returncode
     finally:
         process.kill()
 
@@ -121,7 +121,7 @@ def small():
 
 def run(program, setup=SETUP):
     return subprocess.run([sys.executable, "-c", setup + program], capture_output=True, text=True,
-                          timeout=60)
+                          timeout=600)
 
 
 @pytest.mark.parametrize("work", ["small()", "photile.trace(scene, 1000)", "photile.devices()"])
