@@ -25,6 +25,7 @@ from .glare_ratings import Glare, glare
 from .grids import Grid, grid, grids
 from .years import Daylight, daylight
 from .measuring import Illuminance, measure
+from .outlooks import SunHours, ViewOut, sun_hours, view_out
 from .photons import NONE, Neighbours, PhotonMaps, Photons, neighbours, trace
 from .pictures import SETTINGS, LightState, Picture, png_of, relight, render
 from .reports import write_report
@@ -35,9 +36,10 @@ __version__: str = _photile.version
 __all__ = [
     "NONE", "SETTINGS", "Camera", "Daylight", "DeviceError", "DeviceMemoryError", "Error", "Glare", "Grid",
     "Illuminance", "InputError", "KernelBuildError", "Light", "LightState", "Material",
-    "Neighbours", "OutputError", "PhotonMaps", "Photons", "Picture", "Scene", "UsageError",
+    "Neighbours", "OutputError", "PhotonMaps", "Photons", "Picture", "Scene", "SunHours", "UsageError",
+    "ViewOut",
     "daylight", "devices", "glare", "grid", "grids", "load", "measure", "neighbours", "png_of", "relight", "render",
-    "test_devices", "trace", "write_report",
+    "sun_hours", "test_devices", "trace", "view_out", "write_report",
 ]
 
 

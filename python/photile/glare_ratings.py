@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from . import _photile
 from .errors import InputError, UsageError
 from .grids import Grid
+from .pictures import Changes, lights_asked
 from .progress import Progress, heard_by
-from .scenes import Camera, Scene, floats
+from .scenes import Camera, File, Scene, floats, stated
 
 __all__ = ["Glare", "glare"]
 
@@ -61,6 +62,8 @@ class Glare:
     observers: list[dict[str, Any]]
     _content: dict[str, Any]
     """What a report includes."""
+    _facts: dict[str, Any]
+    """What a report of glare alone states beside it."""
 
     def __len__(self) -> int:
         return len(self.names)
@@ -91,6 +94,9 @@ def glare(
     picture_size: int = 512,
     rays: int = 1024,
     repeats: int = 8,
+    light: Changes = None,
+    mood: str = "",
+    moods: Optional[File] = None,
     integrator: str = "photon-map",
     lumen_per_watt: float = _photile.lumen_per_watt,
     device: str = "",
@@ -113,7 +119,7 @@ def glare(
         Threshold of glare sources in pictures: above 100 in cd/m2, otherwise times the mean luminance.
     picture_size : int
         Pixels across a picture.
-    rays, repeats, integrator, lumen_per_watt, device
+    rays, repeats, light, mood, moods, integrator, lumen_per_watt, device
         As for `measure`.
     progress : callable or True, optional
         See `render`.
@@ -147,6 +153,7 @@ def glare(
         "integrator": integrator,
         "lumen_per_watt": lumen_per_watt,
         "device": device,
+        **lights_asked(light, mood, moods),
     }
     cores = [place._core if isinstance(place, Grid) else scene._camera(place) for place in places]
     with heard_by(progress) as heard:
@@ -155,7 +162,9 @@ def glare(
     if planes:
         plane = planes[-1]
         content |= {"plane": plane.plane, "plan": _photile.plan(scene._core, plane._core, None)}
-    return _ratings(content)
+    facts = {**stated(scene, settings), "response": "planar", "maintenance_factor": 1, "rays": rays,
+             "repeats": repeats, "integrator": integrator, "sky": dict(scene._sky[1])}
+    return _ratings(content, {**facts, "mood": mood} if mood else facts)
 
 
 def _places(observers: Any) -> list[Union[Grid, Camera, str, int]]:
@@ -169,7 +178,7 @@ def _places(observers: Any) -> list[Union[Grid, Camera, str, int]]:
     return [Grid.of_points(rows[:, :3], rows[:, 3:], "observer")]
 
 
-def _ratings(content: dict[str, Any]) -> Glare:
+def _ratings(content: dict[str, Any], facts: dict[str, Any]) -> Glare:
     observers = content["observers"]
 
     def figures(key: str, part: str = "value") -> NDArray[np.float64]:
@@ -193,4 +202,5 @@ def _ratings(content: dict[str, Any]) -> Glare:
         figures("dgi"),
         observers,
         content,
+        facts,
     )

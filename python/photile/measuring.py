@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Union, overload
+from typing import Any, Optional, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _photile
 from .grids import Grid, cores_of
+from .pictures import Changes, lights_asked
 from .progress import Progress, heard_by
-from .scenes import Scene
+from .scenes import File, Scene
 
 __all__ = ["Illuminance", "measure"]
 
@@ -35,7 +36,7 @@ class Illuminance:
     points, normals : (m, 3) arrays
         The points of measurement and their normals.
     lux, error : (m,) arrays
-        Lux from all lights together, and its standard error.
+        Lux from all lights together, and its standard error; daylight factors are per cent.
     by_light, error_by_light : dicts of (m,) arrays
         The same for each light layer.
     statistics : dict of (value, standard error)
@@ -57,8 +58,13 @@ class Illuminance:
     def __len__(self) -> int:
         return len(self.lux)
 
+    @property
+    def unit(self) -> str:
+        """"lx", or "%" of daylight factors."""
+        return "%" if self._run.options["daylight_factor_ground"] is not None else "lx"
+
     def __repr__(self) -> str:
-        span = f", {self.lux.min():.4g} to {self.lux.max():.4g} lx" if len(self) else ""
+        span = f", {self.lux.min():.4g} to {self.lux.max():.4g} {self.unit}" if len(self) else ""
         return f"<photile.Illuminance: {len(self)} points{span}>"
 
     def columns(self) -> dict[str, NDArray[np.float64]]:
@@ -84,6 +90,11 @@ def measure(
     rays: int = 1024,
     repeats: int = 8,
     cylindrical: bool = False,
+    daylight_factor: bool = False,
+    target: str = "",
+    light: Changes = None,
+    mood: str = "",
+    moods: Optional[File] = None,
     integrator: str = "photon-map",
     maintenance: float = 1.0,
     lumen_per_watt: float = _photile.lumen_per_watt,
@@ -108,6 +119,14 @@ def measure(
         error.
     cylindrical : bool
         Cylindrical illuminance around the normals (EN 12464-1).
+    daylight_factor : bool
+        Per cent of the lux on open ground under the CIE overcast sky, in place of lux. Lamps are off, and
+        the sky takes the place of the scene's.
+    target : str
+        Requirements as for `write_report`, whose default this is. Those of EN 1838 ("escape-route") are about
+        direct light alone: nothing reflects, then.
+    light, mood, moods
+        As for `render`.
     integrator : {"photon-map", "path"}
         Paths are unbiased and need no OpenCL device.
     maintenance : float
@@ -128,7 +147,7 @@ def measure(
     InputError
         Arrays do not fit, or hold NaN or infinite numbers.
     UsageError
-        Names the setting and its range.
+        Names the setting and its range; there is no such light, mood or target.
     """
     options = {
         "rays": rays,
@@ -139,6 +158,9 @@ def measure(
         "lumen_per_watt": lumen_per_watt,
         "device": device,
         "portals": scene._portals,
+        "target": target,
+        "daylight_factor_ground": scene._ground if daylight_factor else None,
+        **lights_asked(light, mood, moods),
     }
     grids, several = _grids_of(points, normals)
     with heard_by(progress) as heard:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from . import _photile
 from .errors import InputError, UsageError
 from .progress import Progress, heard_by
-from .scenes import Camera, Scene
+from .scenes import Camera, File, Scene
 
 __all__ = ["Changes", "LightState", "Picture", "SETTINGS", "relight", "render"]
 
@@ -55,7 +55,7 @@ class Picture(Mapping[str, NDArray[np.float32]]):
 
     def __init__(self, core: _photile.Picture, changes: Changes = None) -> None:
         self._core = core
-        self._changes = _listed(changes)
+        self._changes = listed(changes)
         self._core.lights(self._changes)  # refuses what cannot be done
 
     @property
@@ -131,14 +131,11 @@ class Picture(Mapping[str, NDArray[np.float32]]):
             There is no such light, the value is not a change of a light, or a light that is off in a
             picture from a file is to be turned up.
         """
-        return self._core.mix(self._changes + _listed(changes))
+        return self._core.mix(self._changes + listed(changes))
 
     def relit(self, changes: Changes) -> Picture:
         """The same layers with changed lights; nothing is copied. Errors as for `mix`."""
-        picture = Picture(self._core)
-        picture._changes = self._changes + _listed(changes)
-        picture._core.lights(picture._changes)
-        return picture
+        return _changed(self._core, self._changes + listed(changes))
 
     def display(
         self,
@@ -167,13 +164,13 @@ class Picture(Mapping[str, NDArray[np.float32]]):
             sRGB.
         """
         return _in_srgb(self._core.displayed(
-            self._changes + _listed(changes),
+            self._changes + listed(changes),
             {"exposure": exposure, "automatic": automatic, "view": view},
         ))
 
     def save(
         self,
-        file: Union[str, os.PathLike[str]],
+        file: File,
         changes: Changes = None,
         *,
         exposure: float = 0.0,
@@ -198,7 +195,7 @@ class Picture(Mapping[str, NDArray[np.float32]]):
         UsageError
             The name has another ending.
         """
-        name, all_changes = os.fspath(file), self._changes + _listed(changes)
+        name, all_changes = os.fspath(file), self._changes + listed(changes)
         if name.lower().endswith(".exr"):
             self._core.save_exr(name, all_changes)
         elif name.lower().endswith(".png"):
@@ -245,7 +242,14 @@ def png_of(pixels: NDArray[np.uint8]) -> bytes:
     return file.getvalue()
 
 
-def _listed(changes: Changes) -> _photile.Changes:
+def _changed(core: _photile.Picture, changes: _photile.Changes) -> Picture:
+    picture = Picture(core)
+    picture._changes = changes
+    core.lights(changes)  # refuses what cannot be done
+    return picture
+
+
+def listed(changes: Changes) -> _photile.Changes:
     """The changes as the extension takes them."""
     listed = []
     for name, value in (changes or {}).items():
@@ -256,6 +260,11 @@ def _listed(changes: Changes) -> _photile.Changes:
     return listed
 
 
+def lights_asked(light: Changes, mood: str, moods: Optional[File]) -> dict[str, Any]:
+    """A mood, and what is changed in it, as the extension takes them."""
+    return {"light": listed(light), "mood": mood, "moods": "" if moods is None else os.fspath(moods)}
+
+
 def render(
     scene: Scene,
     camera: Union[None, int, str, Camera] = None,
@@ -263,6 +272,9 @@ def render(
     size: Optional[tuple[int, int]] = None,
     quality: str = "good",
     integrator: str = "photon-map",
+    light: Changes = None,
+    mood: str = "",
+    moods: Optional[File] = None,
     lumen_per_watt: float = _photile.lumen_per_watt,
     device: str = "",
     progress: Progress = None,
@@ -281,6 +293,12 @@ def render(
         A set of settings; those given by name override it.
     integrator : {"photon-map", "path"}
         Paths are unbiased and need no OpenCL device; samples_per_pixel controls their noise.
+    light : mapping, optional
+        Changes of lights, see `Picture`; after the mood.
+    mood : str
+        A mood that the live page saved under this name.
+    moods : path, optional
+        The file of moods; by default room.moods.json beside room.gltf.
     lumen_per_watt : float
         The factor between watts and lumens.
     device : str
@@ -301,24 +319,27 @@ def render(
     Raises
     ------
     UsageError
-        Names the setting and its range, or the camera.
+        Names the setting and its range, or the camera; there is no such light or mood.
     DeviceError
         There is no such device, or it failed.
     KeyboardInterrupt
         Ctrl-C was pressed.
     """
+    asked = lights_asked(light, mood, moods)
     options = {
         "size": size,
         "integrator": integrator,
         "lumen_per_watt": lumen_per_watt,
         "device": device,
+        **asked,
     }
     with heard_by(progress) as heard:
-        return Picture(_photile.render(scene._core, scene._camera(camera), options,
-                                       {"quality": quality, **settings}, heard))
+        core = _photile.render(scene._core, scene._camera(camera), options,
+                               {"quality": quality, **settings}, heard)
+    return _changed(core, core.mood(mood, asked["moods"]) + asked["light"])
 
 
-def relight(file: Union[str, os.PathLike[str]], changes: Changes = None) -> Picture:
+def relight(file: File, changes: Changes = None, *, mood: str = "", moods: Optional[File] = None) -> Picture:
     """Read a picture with light layers, from photile, Blender or Arnold, and change its lights.
 
     Parameters
@@ -326,7 +347,9 @@ def relight(file: Union[str, os.PathLike[str]], changes: Changes = None) -> Pict
     file : path
         An EXR whose layers are called ``Combined_<light>`` or ``RGBA_<light>``.
     changes : mapping, optional
-        See `Picture`.
+        See `Picture`; after the mood.
+    mood, moods
+        As for `render`; the file is beside the picture's scene, or the picture.
 
     Returns
     -------
@@ -337,6 +360,8 @@ def relight(file: Union[str, os.PathLike[str]], changes: Changes = None) -> Pict
     InputError
         Names the file, which is missing, damaged or has no light layers.
     UsageError
-        There is no such light, or a light that is off in the file is to be turned up.
+        There is no such light or mood, or a light that is off in the file is to be turned up.
     """
-    return Picture(_photile.read_picture(os.fspath(file)), changes)
+    core = _photile.read_picture(os.fspath(file))
+    asked = lights_asked(changes, mood, moods)
+    return _changed(core, core.mood(mood, asked["moods"]) + asked["light"])

@@ -20,24 +20,24 @@ class _Line:
     """Stages on standard error: a line each, which terminals and notebooks see grow."""
 
     def __init__(self) -> None:
-        self._stage, self._text, self._start = "", "", 0.0
+        self._stage, self._text, self._start, self._shown = "", "", 0.0, 0.0
         # The streams of notebooks are no terminals, yet obey a carriage return.
         self._grows = sys.stderr.isatty() or "ipykernel" in sys.modules
 
     def __call__(self, stage: str, done: int, total: int, unit: str) -> None:
+        now = time.monotonic()
         if stage != self._stage:
             self.end()
-            self._stage, self._start = stage, time.monotonic()
-        seconds = time.monotonic() - self._start
+            self._stage, self._start, self._shown = stage, now, 0.0
         share = f"{100 * done / total:3.0f}% of {total:,} {unit}" if total else f"{done:,} {unit}"
-        text = f"{stage}: {share}, {seconds:.1f} s"
-        if self._grows:
-            print("\r" + text.ljust(len(self._text)), end="", file=sys.stderr, flush=True)
-        self._text = text
+        self._text = f"{stage}: {share}, {now - self._start:.1f} s".ljust(len(self._text))
+        if self._grows and now - self._shown >= 0.2:  # a notebook keeps each
+            print("\r" + self._text, end="", file=sys.stderr, flush=True)
+            self._shown = now
 
     def end(self) -> None:
         if self._text:
-            print("" if self._grows else self._text, file=sys.stderr, flush=True)
+            print("\r" + self._text if self._grows else self._text.rstrip(), file=sys.stderr, flush=True)
         self._text = ""
 
 

@@ -12,6 +12,7 @@ from typing import Any, Optional, Union
 
 import numpy as np
 
+from . import _photile
 from .errors import InputError, OutputError, UsageError
 from .glare_ratings import Glare
 from .measuring import Illuminance
@@ -44,10 +45,11 @@ def write_report(
     file : path
         Ends in .html, .pdf, .svg or .dxf.
     *results : Illuminance, Glare, Daylight, or sequences of these
-        At least one illuminance; all are those of one call of `measure`.
+        Illuminances are those of one call of `measure`; daylight factors may stand beside them. A year, or
+        glare, may stand alone.
     target : str
         Requirements by name, such as "office-desk", or values, such as "Em=500,Uo=0.6"; the highest UGR is
-        that of the results.
+        that of the results. By default those that `measure` was given, which those of EN 1838 have to be.
     project, client, designer : str
         At the head of the report; with a client it ends with lines for signatures.
     logo : path, optional
@@ -64,16 +66,16 @@ def write_report(
     OutputError
         The file cannot be written, or a package is missing.
     UsageError
-        There is no such target or language, the file has another ending, or there is no illuminance.
+        There is no such target or language, nothing that it is about, or the file has another ending.
     """
     listed: list[Results] = []
     for each in results:
         listed.extend(each if isinstance(each, Sequence) else [each])
     if not all(isinstance(each, (Illuminance, Glare, Daylight)) for each in listed):
         raise UsageError("results: give what photile.measure, photile.glare or photile.daylight returned")
-    record = _record(listed, target)
+    record, beside = _record(listed, target)
     about = {"project": project, "client": client, "designer": designer, "language": language,
-             "logo": "" if logo is None else _logo(os.fspath(logo)), "included": _included(listed)}
+             "logo": "" if logo is None else _logo(os.fspath(logo)), "included": _included(beside)}
     record["report"] = {**record.get("report", {}), **about}
     with tempfile.TemporaryDirectory() as folder:
         content = pathlib.Path(folder, "results.json")
@@ -86,10 +88,27 @@ def write_report(
             raise kinds[failure.code](str(failure).replace("\n", " ")) from None
 
 
-def _record(results: list[Results], target: str) -> dict[str, Any]:
+def _record(results: list[Results], target: str) -> tuple[dict[str, Any], list[Results]]:
+    """What the report is of, and the results that it includes."""
     measured = [each for each in results if isinstance(each, Illuminance)]
-    if not measured:
-        raise UsageError("results: glare and daylight stand beside what photile.measure returned; give that, too")
+    lux = [each for each in measured if each.unit == "lx"]
+    main = lux or measured
+    if not main:
+        return _record_alone([each for each in results if not isinstance(each, Illuminance)], target), results
+    return _record_of(main, results, target), [each for each in results if not any(each is one for one in main)]
+
+
+def _record_alone(results: list[Union[Glare, Daylight]], target: str) -> dict[str, Any]:
+    """Of a year, or else of glare."""
+    if not results or target:
+        raise UsageError("results: a target needs what photile.measure returned" if results else
+                         "results: there are none; give what photile.measure, glare or daylight returned")
+    first = next((each for each in results if isinstance(each, Daylight)), results[0])
+    subject = "A year of daylight" if isinstance(first, Daylight) else "Glare"
+    return {**first._facts, "report": {"subject": subject, "colours": _photile.colours()}}
+
+
+def _record_of(measured: list[Illuminance], results: list[Results], target: str) -> dict[str, Any]:
     run = measured[0]._run
     if any(each._run is not run for each in measured):
         raise UsageError("results: these illuminances are of several calls; measure a list of grids")
@@ -112,15 +131,16 @@ def _record(results: list[Results], target: str) -> dict[str, Any]:
                         *((lamp, "name") for lamp in record["photometry"])]:
         if os.path.isabs(entry[name]):
             entry[name] = os.path.basename(entry[name])
-    if "direct light alone" in record.get("target", {}).get("reference", ""):
-        raise UsageError(f"target {target}: it is about direct light alone; use photile measure --target {target}")
     return record
 
 
 def _included(results: list[Results]) -> list[dict[str, Any]]:
+    contents: list[Any] = [each._content for each in results if isinstance(each, Glare)]
+    factors = [each for each in results if isinstance(each, Illuminance)]
     years = [each.figures for each in results if isinstance(each, Daylight)]
-    contents = [each._content for each in results if isinstance(each, Glare)]
-    return [{"file": "results", "content": content} for content in [*contents, *([years] if years else [])]]
+    contents += [_record_of(factors, [], "")] if factors else []
+    contents += [years] if years else []
+    return [{"file": "results", "content": content} for content in contents]
 
 
 def _logo(file: str) -> str:

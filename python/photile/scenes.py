@@ -327,6 +327,11 @@ class Scene:
             _luminaire_text(luminaires),
         )
 
+    @property
+    def _ground(self) -> float:
+        """The reflectance of the ground below the horizon under a sky."""
+        return _photile.ground_reflectance if self._sky[0] is None else self._sky[0]
+
     @classmethod
     def _of(cls, core: _photile.Scene) -> Scene:
         scene = cls.__new__(cls)
@@ -475,6 +480,12 @@ def _luminaire_text(luminaires: Sequence[Luminaire]) -> str:
 def shares(of: Optional[Mapping[str, float]]) -> list[str]:
     """Fractions of materials in the form of the command line."""
     return [f"{material}={share}" for material, share in (of or {}).items()]
+
+
+def stated(scene: Scene, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """What reports state of a scene and of the settings of a measurement."""
+    return {"photile": _photile.version, "scene": os.path.basename(scene._core.source),
+            "date": f"{datetime.date.today()}", **_photile.stated(dict(settings))}
 
 
 def load(

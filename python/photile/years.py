@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from . import _photile
 from .errors import UsageError
 from .grids import Grid, cores_of
+from .pictures import Changes, lights_asked
 from .progress import Progress, heard_by
-from .scenes import File, Scene, joined, number, shares
+from .scenes import File, Scene, joined, number, shares, stated
 
 __all__ = ["Daylight", "daylight"]
 
@@ -42,7 +43,7 @@ class Daylight:
         Occupied hours with more than 1000 lux straight from the sun.
     figures : dict
         All that `photile daylight` writes to JSON of the grid: DA, sDA, ASE, UDI, EN 17037, with
-        several rounds their standard errors.
+        several rounds their standard errors, with `lamps_to` the energy of lamps.
     """
 
     grid: Grid
@@ -55,6 +56,8 @@ class Daylight:
     useful: NDArray[np.float64]
     sun_hours: NDArray[np.float64]
     figures: dict[str, Any]
+    _facts: dict[str, Any]
+    """What a report of the year alone states beside it."""
 
     @property
     def spatial_autonomy(self) -> float:
@@ -88,10 +91,17 @@ def daylight(
     days: str = "mon-sun",
     schedule: Optional[File] = None,
     blinds: Union[None, Scene, Mapping[str, float]] = None,
+    lamps_to: Optional[float] = None,
+    lamp_efficacy: float = 100.0,
+    light: Changes = None,
+    mood: str = "",
+    moods: Optional[File] = None,
     rays: int = 256,
     repeats: int = 4,
     rounds: int = 1,
     maintenance: float = 1.0,
+    lumen_per_watt: float = _photile.lumen_per_watt,
+    device: str = "",
     progress: Progress = None,
     **settings: Union[int, float, str],
 ) -> list[Daylight]:
@@ -100,7 +110,7 @@ def daylight(
     Parameters
     ----------
     scene : Scene
-        Its lights do not count: neither its lamps, nor its sun and sky.
+        Its sun and sky do not count, its lamps only for `lamps_to`.
     grids : Grid or sequence of Grid
         As `grids` returns them.
     weather : path
@@ -121,7 +131,12 @@ def daylight(
         A value for each hour of the year, occupied if above 0, in place of both.
     blinds : Scene, or mapping of patterns of material names to transmittances, optional
         The scene with closed blinds, or panes behind closed blinds. They close when the sun shines in.
-    rays, repeats, maintenance
+    lamps_to : float, optional
+        Mean lux of a grid that the scene's lamps, dimmed together, maintain: `Daylight.figures` has the
+        energy of each, its watts and kilowatt hours.
+    lamp_efficacy : float
+        lm/W of lamps whose photometric files state no power.
+    light, mood, moods, rays, repeats, maintenance, lumen_per_watt, device
         As for `measure`.
     rounds : int
         Of independent rays; with several, results have standard errors.
@@ -152,8 +167,10 @@ def daylight(
         raise UsageError(f"rounds: {rounds!r} is not a whole number above 0")
     if not 0 <= number(ground, "ground") <= 1:
         raise UsageError(f"ground: {ground!r} is not a reflectance from 0 to 1")
-    if not 0 < number(lux, "lux") < np.inf:
-        raise UsageError(f"lux: {lux!r} is not a number above 0")
+    for name, value in (("lux", lux), ("lamps_to", 1 if lamps_to is None else lamps_to),
+                        ("lamp_efficacy", lamp_efficacy)):
+        if not 0 < number(value, name) < np.inf:
+            raise UsageError(f"{name}: {value!r} is not a number above 0")
     all_grids = [grids] if isinstance(grids, Grid) else list(grids)
     options = {
         "weather": os.fspath(weather),
@@ -172,6 +189,11 @@ def daylight(
         "maintenance": maintenance,
         "north": scene._north,
         "portals": scene._portals,
+        "lamps_to": lamps_to or 0,
+        "lamp_efficacy": lamp_efficacy,
+        "lumen_per_watt": lumen_per_watt,
+        "device": device,
+        **lights_asked(light, mood, moods),
     }
     closed = blinds._core if isinstance(blinds, Scene) else None
     with heard_by(progress) as heard:
@@ -183,11 +205,14 @@ def daylight(
     year = 2004 if (2, 29) in zip(months, numbers) else 2005
     starts = np.array([f"{year}-{month:02}-{day:02}" for month, day in zip(months, numbers)], "datetime64[m]")
     times = starts + np.round(60 * np.array(middles)).astype("timedelta64[m]")
-    return [_of_grid(grid, *of_grid, times, np.array(counted)) for grid, of_grid in zip(all_grids, found)]
+    facts = {**stated(scene, settings), "weather": os.path.basename(weather), "patches": patches,
+             "ground_reflectance": ground, "repeats": int(rounds) * repeats, "rays": rays,
+             "maintenance_factor": maintenance}
+    return [_of_grid(grid, *of_grid, times, np.array(counted), facts) for grid, of_grid in zip(all_grids, found)]
 
 
 def _of_grid(grid: Grid, figures: dict[str, Any], lux: NDArray[np.float32], sun: Optional[NDArray[np.float32]],
-             hours: NDArray[np.datetime64], occupied: NDArray[np.bool_]) -> Daylight:
+             hours: NDArray[np.datetime64], occupied: NDArray[np.bool_], facts: dict[str, Any]) -> Daylight:
     sensors = figures["sensors"]
 
     def column(key: str) -> NDArray[np.float64]:
@@ -196,5 +221,5 @@ def _of_grid(grid: Grid, figures: dict[str, Any], lux: NDArray[np.float32], sun:
     return Daylight(
         grid, lux, sun, hours, occupied, column("DA"), column("cDA"),
         np.array([list(sensor["UDI"].values()) for sensor in sensors], float),
-        column("sun_hours"), figures,
+        column("sun_hours"), figures, facts,
     )

@@ -34,6 +34,8 @@ struct YearOptions {
   SharedScene closed;  ///< the scene with closed blinds, null = none
   std::vector<std::string> portals;
   MeasuringParameters measuring;
+  double lamps_to = 0, lamp_efficacy = 100;  ///< lux, 0 = no lamps; lm/W
+  std::string device;
 };
 
 /// The state of each hour in each state of the blinds: 1 = there are no blinds.
@@ -58,6 +60,9 @@ YearOptions year_options(const py::dict& options, const py::object& closed,
   year.measuring.gathering.rays = field<int>(options, "rays");
   year.measuring.repeats = field<int>(options, "repeats");
   year.measuring.maintenance = field<double>(options, "maintenance");
+  year.lamps_to = field<double>(options, "lamps_to");
+  year.lamp_efficacy = field<double>(options, "lamp_efficacy");
+  year.device = field<std::string>(options, "device");
   set_all(year.measuring.photons, settings);
   check_measuring(year.measuring);
   if (year.blinds.size() > daylight::most_blind_groups) {
@@ -90,21 +95,32 @@ daylight::Year year_of(const YearOptions& options, const std::vector<SensorGrid>
 daylight::SkyRounds rounds_of(const YearOptions& options, const daylight::Year& year,
                               const SharedScene& scene, const std::vector<SensorGrid>& grids,
                               Progress& progress) {
-  const SharedScene open = with_portals(scene, grids, options.portals);
   const SharedScene closed =
       options.closed ? with_portals(options.closed, grids, options.portals) : nullptr;
   daylight::SkyRounds rounds;
+  QuietProgress quiet(progress);
   while (rounds.count() < static_cast<std::size_t>(options.rounds)) {
+    Progress& told = rounds.count() == 0 ? progress : quiet;  // stages are shown once
     const daylight::Year next = rounds.count() == 0 ? year : rounds.year_of_next(year);
     if (!closed) {
-      rounds.add(daylight::sky_states(next, *open, options.blinds, progress));
+      rounds.add(daylight::sky_states(next, *scene, options.blinds, told));
       continue;
     }
-    std::vector<SkyState> states{daylight::sky_state(next, *open, "open", 0, progress)};
-    states.push_back(daylight::sky_state(next, *closed, "closed", 1, progress));
+    std::vector<SkyState> states{daylight::sky_state(next, *scene, "open", 0, told)};
+    states.push_back(daylight::sky_state(next, *closed, "closed", 1, told));
     rounds.add(std::move(states));
   }
   return rounds;
+}
+
+/// The scene's own lamps at the points.
+report::YearLamps lamps_of(const YearOptions& options, const Scene& scene, const LightMix& mix,
+                           const daylight::Year& year, Progress& progress) {
+  if (!(options.lamps_to > 0) || scene.lights.empty()) return {};
+  return with_devices(false, options.device, [&](std::span<Device> devices) {
+    return report::year_lamps(scene, year.sensors, mix, options.lamps_to, options.lamp_efficacy,
+                              devices, options.measuring, progress);
+  });
 }
 
 /// A list of (results as the command writes them to .json, lux of shape (points, hours), lux
@@ -121,12 +137,16 @@ py::tuple assess_year(const SharedScene& scene, const py::list& places, const py
   asked.occupancy.set_hours(field<std::string>(options, "occupied"));
   asked.occupancy.set_days(field<std::string>(options, "days"));
   asked.occupancy.schedule = field<std::string>(options, "schedule");
+  const SharedScene own = without_sky(scene);
+  const LightMix mix = mix_of(*own, options);
   daylight::Year year;
   report::DaylightResults results = run(progress, [&](Progress& told) {
     year = year_of(asked_for, grids, asked.ground);
     asked.occupied = daylight::occupied_hours(year.hours, asked.occupancy);
-    return report::daylight_results(asked, year, grids,
-                                    rounds_of(asked_for, year, scene, grids, told));
+    const SharedScene lit = with_portals(own, grids, asked_for.portals);
+    const auto rounds = rounds_of(asked_for, year, lit, grids, told);
+    const auto lamps = lamps_of(asked_for, *lit, mix, year, told);
+    return report::daylight_results(asked, year, grids, rounds, lamps);
   });
   const py::list records = parsed(json_text(report::daylight_json(results, asked), -1));
   const auto hours = static_cast<py::ssize_t>(year.hours.size());

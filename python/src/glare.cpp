@@ -68,7 +68,7 @@ py::object rate_glare(const SharedScene& scene, const py::list& places, const py
   }
   if (!(parameters.search.threshold > 0))
     throw UsageError("source_luminance: give a number above 0");
-  const LightMix mix = LightMix::of(*scene, field<double>(options, "lumen_per_watt"));
+  const LightMix mix = mix_of(*scene, options);
   const std::string json = run(progress, [&](Progress& told) {
     const double coverage =
         glare::coverage_by_luminaires(*scene, observers.front(), parameters.samples);

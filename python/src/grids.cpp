@@ -202,6 +202,12 @@ SharedScene with_portals(const SharedScene& scene, const std::vector<SensorGrid>
   return copy;
 }
 
+SharedScene without_sky(const SharedScene& scene) {
+  auto copy = std::make_shared<Scene>(*scene);
+  while (!copy->lights.empty() && copy->lights.back().is_distant()) copy->lights.pop_back();
+  return copy;
+}
+
 py::object parsed(const std::string& json) {
   return py::module_::import("json").attr("loads")(json);
 }

@@ -24,6 +24,9 @@ std::vector<measuring::SensorGrid> grids_of(const pybind11::list& grids);
 SharedScene with_portals(const SharedScene& scene, const std::vector<measuring::SensorGrid>& grids,
                          const std::vector<std::string>& asked);
 
+/// A copy of the scene without the lights from beyond it that it has last: its sun, sky and ground.
+SharedScene without_sky(const SharedScene& scene);
+
 /// Refuses numbers that the command's options refuse. Errors: UsageError.
 void check_measuring(const MeasuringParameters& parameters);
 

@@ -9,26 +9,80 @@
 #include "arrays.hpp"
 #include "common/foreign_text.hpp"
 #include "grids.hpp"
+#include "loading/surroundings.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
 #include "measuring/working_plane.hpp"
 #include "parts.hpp"
 #include "photile/limits.hpp"
 #include "photile/sensors.hpp"
+#include "report/daylight_tables.hpp"
 #include "report/record.hpp"
+#include "scene/light_names.hpp"
 #include "work.hpp"
 
 namespace photile::python {
 namespace {
 
-/// What was measured, kept for reports.
-struct Measuring {
+/// A scene as it is measured.
+struct Lit {
   SharedScene scene;
   LightMix mix;
+  std::optional<SceneLoadOptions> overcast = {};  ///< of daylight factors: the sky
+  std::string mood = {};
+  std::string target = {};  ///< "" = none
+};
+
+/// What was measured, kept for reports.
+struct Measuring {
+  Lit lit;
   MeasuringParameters parameters;
   measuring::Measurement grids;
   std::vector<std::string> warnings;
 };
+
+bool is_direct(const std::string& target) {
+  return !target.empty() && measuring::parse_requirement(target).is_direct;
+}
+
+/// Under an overcast sky of 100 lux alone, so that lux are daylight factors in per cent. It takes
+/// the place of the sky that the scene has.
+Lit under_overcast_sky(const SharedScene& scene, double ground, const py::dict& options) {
+  SharedScene under = without_sky(scene);
+  const std::size_t own = under->lights.size();
+  SceneLoadOptions load;
+  load.sky = Sky{SkyKind::overcast, 100};
+  load.ground = ground;
+  loading::add_surroundings(*under, load);
+  scene::make_light_names_unique(under->lights);
+  for (std::size_t i = own; i < under->lights.size(); ++i) under->lights[i].group.clear();
+  LightMix mix = mix_of(*under, options);
+  const LightGroups groups = light_groups_of(*under);
+  for (std::size_t i = 0; i < own; ++i) mix.lights[groups.group_of[i]].power = 0;
+  return {std::move(under), std::move(mix), load};
+}
+
+Lit lit_for(const SharedScene& scene, const py::dict& options) {
+  const auto target = field<std::string>(options, "target");
+  if (const auto ground = field<std::optional<double>>(options, "daylight_factor_ground")) {
+    if (!target.empty()) {
+      throw UsageError(
+          "target needs lux, and daylight_factor gives per cent; leave out one of them, or rate "
+          "the "
+          "room by EN 17037 with photile.daylight");
+    }
+    return under_overcast_sky(scene, *ground, options);
+  }
+  Lit lit{scene, mix_of(*scene, options)};
+  lit.target = target;
+  lit.mood = field<std::string>(options, "mood");
+  if (is_direct(target)) {
+    auto black = std::make_shared<Scene>(*scene);
+    measuring::remove_reflections(*black);
+    lit.scene = std::move(black);
+  }
+  return lit;
+}
 
 MeasuringParameters parameters_of_measuring(const py::dict& options, const py::dict& settings) {
   MeasuringParameters parameters;
@@ -50,11 +104,11 @@ std::shared_ptr<Measuring> measure(const SharedScene& scene, const py::list& pla
   const auto device = field<std::string>(options, "device");
   const auto portals = field<std::vector<std::string>>(options, "portals");
   const MeasuringParameters parameters = parameters_of_measuring(options, settings);
-  const LightMix mix = LightMix::of(*scene, field<double>(options, "lumen_per_watt"));
+  const Lit lit = lit_for(scene, options);
   return run(progress, [&](Progress& told) {
-    const bool from_beyond = std::any_of(scene->lights.begin(), scene->lights.end(),
+    const bool from_beyond = std::any_of(lit.scene->lights.begin(), lit.scene->lights.end(),
                                          [](const Light& light) { return light.is_distant(); });
-    const SharedScene lit = from_beyond ? with_portals(scene, grids, portals) : scene;
+    const SharedScene traced = from_beyond ? with_portals(lit.scene, grids, portals) : lit.scene;
     std::vector<std::string> warnings = measuring::doubts_of(*scene, grids);
     for (const std::string& line : warnings) told.warn(line);
     for (const measuring::SensorGrid& grid : grids) {
@@ -62,16 +116,25 @@ std::shared_ptr<Measuring> measure(const SharedScene& scene, const py::list& pla
     }
     const measuring::Readings readings =
         with_devices(parameters.by_paths, device, [&](std::span<Device> devices) {
-          return measuring::measure_grids(*lit, grids, mix, devices, parameters, told);
+          return measuring::measure_grids(*traced, grids, lit.mix, devices, parameters, told);
         });
     measuring::Measurement measured = measuring::measurement_of(grids, readings);
-    measuring::mark_dark_points(measured);
-    for (std::string& line : measuring::doubts_of(measured, mix.lights)) {
-      told.warn(line);
-      warnings.push_back(std::move(line));
+    if (lit.overcast) {
+      double most = 0;
+      for (measuring::GridValues& values : measured) {
+        values.lights.resize(1);
+        most = std::max(most, values.total().statistics.maximum.value);
+      }
+      if (const auto warning = report::darkness_warning(most); !warning.empty()) told.note(warning);
+    } else {
+      measuring::mark_dark_points(measured);
+      for (std::string& line : measuring::doubts_of(measured, lit.mix.lights)) {
+        told.warn(line);
+        warnings.push_back(std::move(line));
+      }
     }
     return std::make_shared<Measuring>(
-        Measuring{scene, mix, parameters, std::move(measured), std::move(warnings)});
+        Measuring{lit, parameters, std::move(measured), std::move(warnings)});
   });
 }
 
@@ -91,7 +154,8 @@ py::list values_at(const Measuring& measured, std::size_t grid) {
   };
   for (const measuring::LightValues& light : values.lights) add(light.light, light);
   // A light alone is all lights together.
-  if (measured.mix.lights.size() == 1) add(measured.mix.lights.front().name, values.total());
+  if (measured.lit.mix.lights.size() == 1)
+    add(measured.lit.mix.lights.front().name, values.total());
   return list;
 }
 
@@ -113,13 +177,30 @@ py::dict statistics_at(const Measuring& measured, std::size_t grid) {
 /// What a report is drawn from, as `photile measure -o NAME.json` writes it.
 ///   facts   what the scene's sky is, and what the report is asked for beside
 py::object record_of(const Measuring& measured, const py::dict& facts) {
-  report::MeasureRun run{*measured.scene, measured.mix, measured.parameters};
+  const Lit& lit = measured.lit;
+  report::MeasureRun run{*lit.scene, lit.mix, measured.parameters};
   run.version = PHOTILE_VERSION;
   run.warnings = measured.warnings;
+  run.mood = lit.mood;
   run.ground = field<std::optional<double>>(facts, "ground");
   run.sky = field<std::vector<std::pair<std::string, std::string>>>(facts, "sky");
   run.north = field<std::optional<double>>(facts, "north");
-  if (const auto target = field<std::string>(facts, "target"); !target.empty()) {
+  if (lit.overcast) {
+    run.ground = loading::ground_reflectance(*lit.overcast);
+    run.sky = loading::sky_facts(*lit.overcast);
+    if (!run.north) run.north = 0;
+  }
+  auto target = field<std::string>(facts, "target");
+  if (target.empty()) target = lit.target;
+  if (is_direct(target) != is_direct(lit.target)) {
+    throw UsageError(is_direct(target)
+                         ? "target " + target +
+                               ": is about direct light alone; give it to photile.measure"
+                         : "target " + target + ": needs all light, and " + lit.target +
+                               " measured direct light alone; measure again");
+  }
+  if (!target.empty()) {
+    if (lit.overcast) throw UsageError("target " + target + ": needs lux, not daylight factors");
     run.requirement = measuring::parse_requirement(target);
     const double limit = run.requirement->glare;
     const auto rated = field<std::optional<std::tuple<std::string, double, double>>>(facts, "ugr");
@@ -134,12 +215,24 @@ py::object record_of(const Measuring& measured, const py::dict& facts) {
   std::string json;
   {
     const Unlocked unlocked;
-    run.room = measuring::room_size(*measured.scene, inside);
-    auto record = report::run_json(measured.grids, run, "lux");
-    record["report"]["colours"] = report::colours_json({.scale = 0});
+    run.room = measuring::room_size(*lit.scene, inside);
+    const std::string unit = lit.overcast ? "DF %" : "lux";
+    auto record = report::run_json(measured.grids, run, unit);
+    record["report"]["colours"] = report::colours_json({.scale = 0, .label = unit});
     json = json_text(record, -1);
   }
   return parsed(json);
+}
+
+/// What reports state of the settings of a measurement.
+py::dict stated(const py::dict& settings) {
+  MeasuringParameters parameters;
+  set_all(parameters.photons, settings);
+  py::dict row;
+  row["seed"] = parameters.photons.seed;
+  row["photons"] = parameters.photons.photons.emitted_photons;
+  row["neighbours"] = parameters.photons.neighbours;
+  return row;
 }
 
 }  // namespace
@@ -166,6 +259,8 @@ void define_measuring(py::module_& module) {
       .def("statistics", &statistics_at)
       .def("record", &record_of);
   module.def("measure", &measure);
+  module.def("stated", &stated);
+  module.def("colours", [] { return parsed(json_text(report::colours_json({}), -1)); });
 }
 
 }  // namespace photile::python

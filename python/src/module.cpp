@@ -48,6 +48,7 @@ PYBIND11_MODULE(_photile, module) {
   module.attr("version") = PHOTILE_VERSION;
   module.attr("none") = 0xFFFF'FFFFu;
   module.attr("lumen_per_watt") = photile::defaults::lumen_per_watt;
+  module.attr("ground_reflectance") = photile::defaults::ground_reflectance;
   module.attr("wall_band") = photile::defaults::wall_band;
   photile::python::define_array_memory(module);
   photile::python::define_work(module);
@@ -59,4 +60,5 @@ PYBIND11_MODULE(_photile, module) {
   photile::python::define_measuring(module);
   photile::python::define_glare(module);
   photile::python::define_daylight(module);
+  photile::python::define_outlooks(module);
 }

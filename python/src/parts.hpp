@@ -14,6 +14,7 @@
 #include "photile/camera.hpp"
 #include "photile/device.hpp"
 #include "photile/errors.hpp"
+#include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
 #include "photile/scene.hpp"
 
@@ -28,6 +29,7 @@ void define_grids(pybind11::module_& module);
 void define_measuring(pybind11::module_& module);
 void define_glare(pybind11::module_& module);
 void define_daylight(pybind11::module_& module);
+void define_outlooks(pybind11::module_& module);
 
 using SharedScene = std::shared_ptr<Scene>;
 
@@ -100,6 +102,11 @@ bool is_by_paths(const pybind11::dict& options);
 
 /// A number of the scene's cameras, or a tuple as camera_of takes it.
 Camera chosen_camera(const Scene& scene, const pybind11::object& camera);
+
+/// The scene's lights with the option "mood" of the file "moods" ("" = beside the scene), then the
+/// changes "light", a list of names and what the command's --light takes. Errors: UsageError where
+/// there is no such file, mood or light; InputError for a damaged file.
+LightMix mix_of(const Scene& scene, const pybind11::dict& options);
 
 /// Settings by name, from a dictionary of numbers and strings; "quality" is set first. Errors:
 /// UsageError that names the setting.

@@ -12,6 +12,7 @@
 #include "parts.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/renderer.hpp"
+#include "view/moods.hpp"
 #include "work.hpp"
 
 namespace photile::python {
@@ -19,23 +20,51 @@ namespace {
 
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
+std::vector<LightChange> listed(const Changes& changes) {
+  std::vector<LightChange> list;
+  for (const auto& [name, value] : changes) list.push_back({name, value});
+  return list;
+}
+
+/// What a mood changes in a mix; nothing where none is asked for.
+///   given    the file of moods; "" = the first that exists
+///   beside   the files beside which it may lie
+std::vector<LightChange> changes_of_mood(const std::string& mood,
+                                         const std::filesystem::path& given,
+                                         const std::vector<std::filesystem::path>& beside,
+                                         const LightMix& mix) {
+  if (mood.empty()) return {};
+  std::vector<std::filesystem::path> files{given};
+  if (given.empty()) {
+    files.clear();
+    for (const auto& file : beside) files.push_back(view::Moods::file_of(file));
+  }
+  const auto found = std::ranges::find_if(
+      files, [](const auto& file) { return std::filesystem::is_regular_file(file); });
+  if (found == files.end()) {
+    throw UsageError(files.front().string() +
+                     ": there is no such moods file; save moods on the live page, or give " +
+                     "moods=FILE");
+  }
+  return view::Moods(*found).changes(mood, mix);
+}
+
 /// Layers at a power of 1, and what the file that they are written to says of them.
 class Picture {
  public:
   LightLayers layers;
-  LightMix own;               ///< powers of the scene, or of the file
-  bool from_file = false;     ///< what is off there cannot be turned up
-  PictureHeader header;       ///< attributes
-  RunStatistics statistics;   ///< of its rendering
-  RenderParameters settings;  ///< that it was rendered with
+  LightMix own;                       ///< powers of the scene, or of the file
+  bool from_file = false;             ///< what is off there cannot be turned up
+  PictureHeader header;               ///< attributes
+  std::filesystem::path file, scene;  ///< that it is of, beside which moods may lie
+  RunStatistics statistics;           ///< of its rendering
+  RenderParameters settings;          ///< that it was rendered with
 
   /// Errors: UsageError as change_lights and relight have them.
   LightMix mix_of(const Changes& changes) const {
-    std::vector<LightChange> list;
-    for (const auto& [name, value] : changes) list.push_back({name, value});
-    if (from_file) return relit_mix(header, list);
+    if (from_file) return relit_mix(header, listed(changes));
     LightMix mix = own;
-    change_lights(mix, list);
+    change_lights(mix, listed(changes));
     return mix;
   }
 
@@ -85,8 +114,10 @@ std::shared_ptr<Picture> render_picture(const std::shared_ptr<Scene>& scene, con
   const auto device = field<std::string>(options, "device");
   const auto lumen_per_watt = field<double>(options, "lumen_per_watt");
   const bool by_paths = is_by_paths(options);
+  mix_of(*scene, options);  // refuses moods and changes that cannot be done before it works
   return run(progress, [&](Progress& told) {
     auto picture = std::make_shared<Picture>();
+    picture->scene = scene->source;
     picture->own = LightMix::of(*scene, lumen_per_watt);
     picture->settings = parameters;
     if (by_paths) {
@@ -124,6 +155,9 @@ std::shared_ptr<Picture> read_picture(const std::filesystem::path& file) {
     throw InputError(file.string() + ": " + error.what());
   }
   picture->from_file = true;
+  picture->file = file;
+  if (const auto scene = image.attributes.find("photile.scene"); scene != image.attributes.end())
+    picture->scene = file.parent_path() / std::filesystem::path(scene->second).filename();
   return picture;
 }
 
@@ -171,6 +205,18 @@ py::object displayed(const Picture& picture, const Changes& changes, const py::d
     }
   }
   return taken<float>(std::move(pixels), picture.shape(3));
+}
+
+/// What a mood changes in a picture.
+Changes mood_of(const Picture& picture, const std::string& mood, const std::string& moods) {
+  std::vector<std::filesystem::path> beside;
+  for (const auto& file : {picture.scene, picture.file}) {
+    if (!file.empty()) beside.push_back(file);
+  }
+  Changes changes;
+  for (const LightChange& change : changes_of_mood(mood, moods, beside, picture.own))
+    changes.emplace_back(change.name, change.value);
+  return changes;
 }
 
 void save_exr(const Picture& picture, const std::filesystem::path& file, const Changes& changes) {
@@ -228,6 +274,17 @@ bool is_by_paths(const py::dict& options) {
   throw UsageError("integrator: '" + integrator + "' is not one of photon-map, path");
 }
 
+LightMix mix_of(const Scene& scene, const py::dict& options) {
+  LightMix mix = LightMix::of(scene, field<double>(options, "lumen_per_watt"));
+  std::vector<LightChange> changes =
+      changes_of_mood(field<std::string>(options, "mood"), field<std::string>(options, "moods"),
+                      {scene.source}, mix);
+  for (LightChange& change : listed(field<Changes>(options, "light")))
+    changes.push_back(std::move(change));
+  change_lights(mix, changes);
+  return mix;
+}
+
 Camera chosen_camera(const Scene& scene, const py::object& camera) {
   if (py::isinstance<py::tuple>(camera)) return camera_of(scene, camera.cast<py::tuple>());
   return scene.cameras.at(camera.cast<std::size_t>());
@@ -271,6 +328,7 @@ void define_pictures(py::module_& module) {
       .def("unit_layer", &unit_layer)
       .def("unit_illuminance", &unit_illuminance)
       .def("mix", &mixed_layers)
+      .def("mood", &mood_of)
       .def("displayed", &displayed)
       .def("save_exr", &save_exr)
       .def("save_png", &save_png);

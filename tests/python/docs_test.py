@@ -27,7 +27,7 @@ def test_everything_public_is_documented(name):
 
 
 @pytest.mark.parametrize("name", ["load", "trace", "render", "relight", "measure", "grids", "glare", "daylight",
-                                  "write_report", "neighbours", "PhotonMaps", "Scene"])
+                                  "sun_hours", "view_out", "write_report", "neighbours", "PhotonMaps", "Scene"])
 def test_every_parameter_is_in_the_docstring(name):
     thing = getattr(photile, name)
     text = inspect.getdoc(thing)

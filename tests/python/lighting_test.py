@@ -1,6 +1,7 @@
 """Grids, luminaires, skies, glare and years: the numbers of the command with the same seed."""
 
 import datetime
+import importlib.util
 import json
 import os
 import subprocess
@@ -16,12 +17,20 @@ OFFICE = Path(__file__).resolve().parents[2] / "scenes" / "office"
 ROOM = OFFICE / "office.gltf"
 PANELS = {"file": str(OFFICE / "panel.ies"), "position": "ceiling", "count": [2, 1], "spacing": np.array([1.8, 0])}
 QUICK = {"rays": 16, "repeats": 2}
+DRAWS = all(map(importlib.util.find_spec, ("jinja2", "contourpy")))
+reports = pytest.mark.skipif(not DRAWS, reason="apt-get install python3-jinja2 python3-contourpy")
 
 
 def of_command(folder, *arguments):
     subprocess.run([os.environ["PHOTILE_COMMAND"], *map(str, arguments), "--rays", "16", "--repeats", "2",
                     "--quiet", "-o", folder / "a.json"], check=True, stdout=subprocess.DEVNULL)
     return json.loads((folder / "a.json").read_text())
+
+
+def panels_in(folder):
+    (folder / "panel.ies").write_bytes((OFFICE / "panel.ies").read_bytes())
+    (folder / "l.json").write_text(json.dumps([{**PANELS, "file": "panel.ies", "spacing": [1.8, 0]}]))
+    return folder / "l.json"
 
 
 @pytest.fixture
@@ -51,12 +60,10 @@ def test_lux_on_planes_and_walls_is_that_of_the_command(tmp_path, weather):
 
 
 def test_glare_is_that_of_the_command(tmp_path):
-    listed = {**PANELS, "file": "panel.ies", "spacing": [1.8, 0]}
-    (tmp_path / "panel.ies").write_bytes((OFFICE / "panel.ies").read_bytes())
-    (tmp_path / "l.json").write_text(json.dumps([listed]))
-    room, same = (photile.load(ROOM, luminaires=which) for which in ([PANELS], tmp_path / "l.json"))
+    file = panels_in(tmp_path)
+    room, same = (photile.load(ROOM, luminaires=which) for which in ([PANELS], file))
     assert room.layers == same.layers and len(room.lights) == 2
-    options = ["glare", ROOM, "--luminaires", tmp_path / "l.json", "--photons", 5000]
+    options = ["glare", ROOM, "--luminaires", file, "--photons", 5000]
     results = of_command(tmp_path, *options, "--grid", "--spacing", 3)
     rated = photile.glare(room, photile.grids(room, "floor+1.2", spacing=3), photons_emitted=5000, **QUICK)
     assert rated.observers == results["observers"] and np.nanmax(rated.ugr) > 10 and np.isnan(rated.dgp).all()
@@ -68,25 +75,56 @@ def test_glare_is_that_of_the_command(tmp_path):
 
 def test_a_year_is_that_of_the_command(tmp_path, weather):
     results = of_command(tmp_path, "daylight", ROOM, "--plane", "floor+0.75", "--spacing", 2, "--weather", weather,
-                         "--patches", 145, "--blinds", "pane=0.05", "--occupied", "9-17", "--seed", 7)
-    room = photile.load(ROOM, sky=("overcast", 1000))
+                         "--patches", 145, "--blinds", "pane=0.05", "--occupied", "9-17", "--seed", 7,
+                         "--luminaires", panels_in(tmp_path), "--lamps-to", 400, "--lamp-efficacy", 80, "--light",
+                         "panel=x2", "--photons", 5000, *(["-o", tmp_path / "a.html"] if DRAWS else []))
+    room = photile.load(ROOM, sky=("overcast", 1000), luminaires=[PANELS])
     year, = photile.daylight(room, photile.grids(room, "floor+0.75", spacing=2), weather, patches=145,
-                             blinds={"pane": 0.05}, occupied="9-17", seed=7, **QUICK)
+                             blinds={"pane": 0.05}, occupied="9-17", seed=7, lamps_to=400, lamp_efficacy=80,
+                             light={"panel": 2}, photons_emitted=5000, **QUICK)
     assert year.figures == results[0] and year.lux.shape == (len(year), 8760)
+    assert 0 < year.figures["lamps"][0]["kilowatt_hours"] < year.figures["lamps"][0]["undimmed_kilowatt_hours"]
     assert np.allclose((year.lux[:, year.occupied] >= 300).mean(axis=1), year.autonomy)
+    if DRAWS:
+        photile.write_report(tmp_path / "b.html", year)
+        assert (tmp_path / "b.html").read_bytes() == (tmp_path / "a.html").read_bytes()
     assert str(year.hours[year.occupied][0]) == "2005-01-01T09:30" and year.occupied.sum() == 8 * 365
 
 
-def test_a_report_is_that_of_the_command(tmp_path):
-    pytest.importorskip("jinja2")
-    pytest.importorskip("contourpy")
-    command = [os.environ["PHOTILE_COMMAND"], "measure", ROOM, "--plane", "floor+0.75", "--sky", "overcast=9000",
-               "--rays", "16", "--repeats", "2", "--photons", "5000", "--target", "office-desk", "--project", "P"]
-    subprocess.run([*command, "-o", tmp_path / "a.html", "--quiet"], check=True, stdout=subprocess.DEVNULL)
-    room = photile.load(ROOM, sky=("overcast", 9000))
-    measured = photile.measure(room, photile.grids(room, "floor+0.75"), photons_emitted=5000, **QUICK)
-    photile.write_report(tmp_path / "b.html", measured, target="office-desk", project="P")
-    assert (tmp_path / "b.html").read_bytes() == (tmp_path / "a.html").read_bytes()
+SKY = "overcast", 9000
+DESK = {"target": "office-desk", "project": "P"}
+MOOD = {"photile_moods": 1, "moods": {"dusk": {"sky": {"power": 5e5, "unit": "lm"}, "ground": {"on": False}}}}
+
+
+@reports
+@pytest.mark.parametrize("ending, options, loading, measuring, reporting", [
+    ("html", ["--sky", "overcast=9000", "--target", "office-desk", "--project", "P"], {"sky": SKY}, {}, DESK),
+    ("html", ["--sky", "overcast=9000", "--target", "escape-route"], {"sky": SKY}, {"target": "escape-route"}, {}),
+    ("html", ["--sky", "overcast=9000", "--mood", "dusk", "--light", "sky=x2"], {"sky": SKY},
+     {"mood": "dusk", "light": {"sky": 2}}, {}),
+    ("svg", ["--daylight-factor"], {"sky": SKY}, {"daylight_factor": True}, {})])
+def test_a_report_is_that_of_the_command(tmp_path, ending, options, loading, measuring, reporting):
+    (tmp_path / "moods.json").write_text(json.dumps(MOOD))
+    moods = ["--moods", tmp_path / "moods.json"] if "mood" in measuring else []
+    of_command(tmp_path, "measure", ROOM, "--plane", "floor+0.75", "--photons", 5000, *options, *moods,
+               "-o", tmp_path / f"a.{ending}")
+    room = photile.load(ROOM, **loading)
+    measured = photile.measure(room, photile.grids(room, "floor+0.75"), photons_emitted=5000, **QUICK, **measuring,
+                               **({"moods": moods[1]} if moods else {}))
+    photile.write_report(tmp_path / f"b.{ending}", measured, **reporting)
+    assert (tmp_path / f"b.{ending}").read_bytes() == (tmp_path / f"a.{ending}").read_bytes()
+
+
+@reports
+def test_glare_and_daylight_factors_stand_in_a_report(tmp_path):
+    room = photile.load(ROOM, luminaires=[PANELS])
+    rated = photile.glare(room, photile.grids(room, "floor+1.2", spacing=3), photons_emitted=5000, **QUICK)
+    photile.write_report(tmp_path / "a.html", rated)
+    assert f"<td>{np.nanmax(rated.ugr):.1f} " in (tmp_path / "a.html").read_text()
+    lux, factors = (photile.measure(room, photile.grids(room, "floor+0.75"), photons_emitted=5000, **QUICK, **more)
+                    for more in ({}, {"daylight_factor": True}))
+    photile.write_report(tmp_path / "a.html", lux, factors)
+    assert f"<td>{factors[0].lux.mean():.2f}%</td>" in (tmp_path / "a.html").read_text() and factors[0].unit == "%"
 
 
 def test_the_sun_stands_where_the_hour_and_the_site_have_it():

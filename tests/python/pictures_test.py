@@ -76,6 +76,16 @@ def test_a_file_is_what_was_rendered(picture, tmp_path):
     assert np.allclose(other.mix(), again.mix({"warm": 3}), rtol=1e-5)
 
 
+def test_a_mood_comes_before_changes(lamps, picture, tmp_path):
+    picture.save(tmp_path / "a.exr")
+    moods = tmp_path / "a.moods.json"  # beside the picture
+    moods.write_text('{"photile_moods": 1, "moods": {"dusk": {"warm": {"power": 400}, "cold": {"on": false}}}}')
+    rendered = photile.render(lamps, size=(8, 6), mood="dusk", moods=moods, light={"warm": 2}, **QUICK)
+    for dusk in (photile.relight(tmp_path / "a.exr", {"warm": 2}, mood="dusk"), rendered):
+        assert dusk.lights["warm"].power == pytest.approx(800) and dusk["cold"].max() == 0
+        assert np.allclose(dusk.mix(), dusk["warm"], rtol=1e-5) and dusk.mix().max() > 0
+
+
 def test_another_program_reads_the_layers(picture, tmp_path):
     oiio = pytest.importorskip("OpenImageIO")
     picture.save(tmp_path / "a.exr")

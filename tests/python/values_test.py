@@ -109,7 +109,13 @@ def test_of_a_grid(name, value):
     ("grids makes some", lambda of: photile.daylight(of, [], "a.epw")),
     ("patches", lambda of: photile.daylight(of, [], "a.epw", patches=5)),
     ("no.epw", lambda of: photile.daylight(of, photile.Grid.of_points([[0, 0, 1]]), "no.epw")),
-    ("results", lambda of: photile.write_report("a.html", 3)), ("progress", lambda of: measure(of, progress=3))])
+    ("windows", lambda of: photile.view_out(of, [[0, 0, 1]])), ("site", lambda of: photile.sun_hours(of, "2026-03-01")),
+    ("2026-13", lambda of: photile.sun_hours(of, "2026-13-01", site=(0, 0, 0))), ("no.json", lambda of: measure(
+        of, mood="evening", moods="no.json")), ("lamps_to", lambda of: photile.daylight(of, [], "a.epw", lamps_to=0)),
+    ("direct light alone", lambda of: photile.write_report("a.html", measure(of), target="escape-route")),
+    ("per cent", lambda of: measure(of, target="office-desk", daylight_factor=True)),
+    ("results", lambda of: photile.write_report("a.html", 3)), ("progress", lambda of: measure(of, progress=3)),
+    ("there are none", lambda of: photile.write_report("a.html"))])
 def test_of_lighting(message, call):
     check(message, lambda: call(scene()))
 

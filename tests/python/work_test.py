@@ -36,6 +36,15 @@ def test_progress_is_a_line_of_each_stage(lamps, capsys):
     assert capsys.readouterr().err == ""
 
 
+def test_progress_in_a_notebook_grows_on_one_line_that_ends(lamps, capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "ipykernel", sys)
+    photile.trace(lamps, 400_000, progress=True)
+    shown = capsys.readouterr().err
+    *grown, last = shown.rstrip("\n").split("\r")[1:]
+    assert shown.endswith("\n") and shown.count("\n") == 1 and last.startswith("trace photons: 100% of 400,000 paths, ")
+    assert all(one.startswith("trace photons: ") and len(one) <= len(last) for one in grown)
+
+
 def test_an_exception_of_the_callback_stops_the_work(lamps):
     class Enough(Exception):
         pass

@@ -26,7 +26,6 @@
 #include "loading/load_scene.hpp"
 #include "measuring/measurement.hpp"
 #include "photile/errors.hpp"
-#include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
 #include "photile/sensors.hpp"
 #include "render/refinement.hpp"
@@ -67,33 +66,8 @@ report::YearLamps lamps_of(const DaylightOptions& options, const Scene& scene,
   std::vector<Device> devices = devices_for(options.render, progress);
   MeasuringParameters parameters = options.parameters;
   parameters.photons = options.render.parameters;
-  auto found = measure_illuminance(scene, sensors, mix, devices, parameters, progress);
-  const LightGroups groups = light_groups_of(scene);
-  std::erase_if(found, [&](const LightIlluminance& light) {
-    return std::none_of(groups.groups.begin(), groups.groups.end(), [&](const LightGroup& group) {
-      return group.name == light.light && !scene.lights[group.lights.front()].is_distant();
-    });
-  });
-  report::YearLamps lamps{std::move(found), {}, options.lamps_to};
-  std::vector<MixedLight> lights;
-  std::vector<bool> reaches;
-  for (const LightIlluminance& lamp : lamps.lux) {
-    for (const MixedLight& light : mix.lights) {
-      if (light.name == lamp.light) lights.push_back(light);
-    }
-    reaches.push_back(std::any_of(lamp.sensors.begin(), lamp.sensors.end(),
-                                  [](const Measured& measured) { return measured.value > 0; }));
-  }
-  for (const auto& line : measuring::lights_that_reach_nothing(lights, reaches, "point")) {
-    progress.warn(line);
-  }
-  const std::vector<double> watts = report::watts_of(scene, mix, options.lamp_efficacy);
-  for (const LightIlluminance& lamp : lamps.lux) {
-    for (std::size_t i = 0; i < watts.size(); ++i) {
-      if (mix.lights[i].name == lamp.light) lamps.watts.push_back(watts[i]);
-    }
-  }
-  return lamps;
+  return report::year_lamps(scene, sensors, mix, options.lamps_to, options.lamp_efficacy, devices,
+                            parameters, progress);
 }
 
 /// What a report of the year alone states beside its figures.

@@ -73,24 +73,6 @@ LightMix mix_of_sky(const SceneLoadOptions& load, Scene& scene, const RenderOpti
   return mix;
 }
 
-/// Makes all surfaces black, but for glass.
-void remove_reflections(Scene& scene) {
-  for (Material& material : scene.materials) {
-    if (material.interaction == Interaction::glass) continue;
-    material.interaction = Interaction::opaque;
-    material.diffuse = material.specular = glm::vec3(0.0f);
-    material.metallic_roughness = none;
-  }
-}
-
-double most_of(const measuring::Measurement& measurement) {
-  double most = 0;
-  for (const auto& grid : measurement) {
-    for (const Measured& reading : grid.total().sensors) most = std::max(most, reading.value);
-  }
-  return most;
-}
-
 /// Everything that the command line requests.
 std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const Scene& scene,
                                             Progress& progress) {
@@ -105,15 +87,11 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
     return level;
   };
   if (options.walls) add(measuring::wall_grids(scene, at("floor")));
-  if (options.ceiling) {
-    grids.push_back(measuring::ceiling_grid(scene, plane_at(plane, "floor")));
-  }
-  if (!options.cylindrical_at.empty()) {
-    grids.push_back(measuring::cylindrical_grid(scene, plane_at(plane, options.cylindrical_at)));
-  }
-  if (!options.semi_cylindrical_at.empty()) {
+  if (options.ceiling) add({measuring::ceiling_grid(scene, plane_at(plane, "floor"))});
+  if (!options.cylindrical_at.empty())
+    add({measuring::cylindrical_grid(scene, plane_at(plane, options.cylindrical_at))});
+  if (!options.semi_cylindrical_at.empty())
     add(measuring::semi_cylindrical_grids(scene, at(options.semi_cylindrical_at)));
-  }
   const std::size_t sensors = clear_of_furniture(plane, scene, grids, progress);
   if (sensors > limits::max_sensors) {
     throw UsageError(fmt::format("{} points together, more than {}; measure fewer", sensors,
@@ -171,7 +149,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   const LightMix mix =
       options.daylight_factor ? mix_of_sky(render.load, scene, render) : mix_of(scene, render);
   tell_scene(scene, mix, render.load, progress);
-  if (requirement && requirement->is_direct) remove_reflections(scene);
+  if (requirement && requirement->is_direct) measuring::remove_reflections(scene);
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
   outputs.check_names(grids);
   scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
@@ -191,8 +169,12 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (!leads()) return;
   measuring::Measurement measurement = measuring::measurement_of(grids, readings);
   if (options.daylight_factor) {
-    for (measuring::GridValues& values : measurement) values.lights.resize(1);
-    const std::string warning = report::darkness_warning(most_of(measurement));
+    double most = 0;
+    for (measuring::GridValues& values : measurement) {
+      values.lights.resize(1);
+      most = std::max(most, values.total().statistics.maximum.value);
+    }
+    const std::string warning = report::darkness_warning(most);
     if (!warning.empty()) progress.note(warning);
   } else {
     measuring::mark_dark_points(measurement);
@@ -215,9 +197,8 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   }
   for (const auto& line : sky_lines(render.load)) std::cout << line << '\n';
   if (requirement) {
-    for (const auto& line : measuring::requirement_lines(measurement, *requirement, glare)) {
+    for (const auto& line : measuring::requirement_lines(measurement, *requirement, glare))
       std::cout << line << '\n';
-    }
   }
 }
 

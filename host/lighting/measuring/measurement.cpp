@@ -311,6 +311,15 @@ std::vector<Portal> portals_of_grids(const Scene& scene, std::span<const SensorG
   return trace::portals_asked_for(scene, asked, points);
 }
 
+void remove_reflections(Scene& scene) {
+  for (Material& material : scene.materials) {
+    if (material.interaction == Interaction::glass) continue;
+    material.interaction = Interaction::opaque;
+    material.diffuse = material.specular = glm::vec3(0.0f);
+    material.metallic_roughness = none;
+  }
+}
+
 std::vector<std::string> doubts_of(const Scene& scene, std::span<const SensorGrid> grids) {
   constexpr double near = 0.01;  // metres
   std::vector<std::string> lines;

@@ -125,6 +125,9 @@ Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, co
 std::vector<Portal> portals_of_grids(const Scene& scene, std::span<const SensorGrid> grids,
                                      std::span<const std::string> asked);
 
+/// Makes all surfaces black, but for glass: what remains is direct light.
+void remove_reflections(Scene& scene);
+
 /// Warnings before anything is measured: sensors with a surface less than a centimetre in front of
 /// them, which are in furniture or just below a top, and light that cannot reach any.
 std::vector<std::string> doubts_of(const Scene& scene, std::span<const SensorGrid> grids);

@@ -1,9 +1,13 @@
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
+#include "measuring/measurement.hpp"
+#include "photile/light_layers.hpp"
 #include "report/daylight_tables.hpp"
+#include "report/record.hpp"
 
 namespace photile::report {
 
@@ -108,6 +112,30 @@ void add_errors(const DaylightAsked& asked, const Year& year, const SkyRounds& r
 }
 
 }  // namespace
+
+YearLamps year_lamps(const Scene& scene, std::span<const Sensor> sensors, const LightMix& mix,
+                     double target_lux, double efficacy, std::span<Device> devices,
+                     const MeasuringParameters& parameters, Progress& progress) {
+  YearLamps lamps{{}, {}, target_lux};
+  const LightGroups groups = light_groups_of(scene);
+  const std::vector<double> watts = watts_of(scene, mix, efficacy);
+  std::vector<MixedLight> lights;
+  std::vector<bool> reaches;
+  for (LightIlluminance& lamp :
+       measure_illuminance(scene, sensors, mix, devices, parameters, progress)) {
+    const auto group = std::ranges::find(groups.groups, lamp.light, &LightGroup::name);
+    if (group == groups.groups.end() || scene.lights[group->lights.front()].is_distant()) continue;
+    const auto mixed = std::ranges::find(mix.lights, lamp.light, &MixedLight::name);
+    lights.push_back(*mixed);
+    lamps.watts.push_back(watts[static_cast<std::size_t>(mixed - mix.lights.begin())]);
+    reaches.push_back(std::ranges::any_of(
+        lamp.sensors, [](const Measured& measured) { return measured.value > 0; }));
+    lamps.lux.push_back(std::move(lamp));
+  }
+  for (const auto& line : measuring::lights_that_reach_nothing(lights, reaches, "point"))
+    progress.warn(line);
+  return lamps;
+}
 
 DaylightResults daylight_results(const DaylightAsked& asked, const Year& year,
                                  const std::vector<measuring::SensorGrid>& grids,

@@ -56,6 +56,13 @@ struct YearLamps {
   double target_lux = 0;                   ///< that they maintain together
 };
 
+/// Measures the scene's own lamps: not the light from beyond it. Errors: those of
+/// measure_illuminance.
+///   efficacy   lm/W of lamps whose files state no power
+YearLamps year_lamps(const Scene& scene, std::span<const Sensor> sensors, const LightMix& mix,
+                     double target_lux, double efficacy, std::span<Device> devices,
+                     const MeasuringParameters& parameters, Progress& progress);
+
 /// By the schedule of the blinds, with the sun as it is without them (IES LM-83), then in each of
 /// their states.
 /// With several rounds, figures have standard errors, except those of a single state.
