@@ -13,6 +13,7 @@ import json
 import re
 import shlex
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -177,21 +178,30 @@ def _schedule(fixtures: list[Fixture]) -> bytes:
     return text.getvalue().encode()
 
 
-def _chosen(rooms: list[Room], patterns: list[str]) -> list[Room]:
-    """Rooms of these numbers or names; without patterns those without doubts.
+def _is_named(room: Room, pattern: str) -> bool:
+    return any(_fits(text, pattern) for text in (room.name, room.number, room.long_name))
 
-    Errors: UsageError where no room fits a pattern.
-    """
-    def fits(room: Room, pattern: str) -> bool:
-        return any(_fits(text, pattern) for text in (room.name, room.number, room.long_name))
 
+def _check_patterns(option: str, patterns: list[str], rooms: list[Room]) -> None:
+    """Errors: UsageError where no room fits a pattern."""
     for pattern in patterns:
-        if not any(fits(room, pattern) for room in rooms):
+        if not any(_is_named(room, pattern) for room in rooms):
             there = ", ".join(room.name for room in rooms) or "none"
-            raise UsageError(f"--rooms {pattern}: no room has this name; there are: {there}")
+            raise UsageError(f"{option} {pattern}: no room has this name; there are: {there}")
+
+
+def _chosen(rooms: list[Room], patterns: list[str]) -> list[Room]:
+    """Rooms of these numbers or names; without patterns those without doubts. Errors: UsageError."""
+    _check_patterns("--rooms", patterns, rooms)
     if not patterns:
         return [room for room in rooms if not room.doubt]
-    return [room for room in rooms if any(fits(room, pattern) for pattern in patterns)]
+    return [room for room in rooms if any(_is_named(room, pattern) for pattern in patterns)]
+
+
+def _grid(room: Room, targets: Sequence[tuple[str, str]]) -> dict[str, Any]:
+    """The room's working plane, with the last target whose pattern it fits."""
+    own = [target for pattern, target in targets if _is_named(room, pattern)]
+    return room.grid() | ({"target": own[-1]} if own else {})
 
 
 def _json_lines(entries: list[dict[str, Any]]) -> bytes:
@@ -220,7 +230,7 @@ def _summary(building: Building, chosen: list[Room], lit: int) -> list[str]:
 
 
 def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[str, Path]],
-            observers: bool = False) -> Conversion:
+            observers: bool = False, targets: Sequence[tuple[str, str]] = ()) -> Conversion:
     """Write buildings as a scene, its rooms and its fixtures.
 
     Parameters
@@ -237,6 +247,8 @@ def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[st
         Pattern of types of fixtures, and their photometric file.
     observers : bool
         Whether to write observers of each room into the folder ``.observers``.
+    targets : list of pairs
+        Pattern of rooms, as of `rooms`, and what their light is compared with: "office-desk".
 
     Errors: InputError, UsageError, OutputError, ImportError.
     """
@@ -244,6 +256,7 @@ def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[st
         raise UsageError(f"{scene}: name a .glb file to write")
     building = read(files)
     chosen = _chosen(building.rooms, rooms)
+    _check_patterns("--target", [pattern for pattern, _ in targets], building.rooms)
     photometry = _Photometry(scene, building.warnings)
     _add_photometry(building, ies, photometry)
     luminaires = _luminaires(building.fixtures, photometry)
@@ -261,7 +274,7 @@ def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[st
 
     places, report = ["--plane", f"floor+{working_plane}"], []
     if chosen:
-        places = ["--grid", beside(".grids.json", _json_lines([room.grid() for room in chosen]))]
+        places = ["--grid", beside(".grids.json", _json_lines([_grid(room, targets) for room in chosen]))]
         report = ["--include", beside(".rooms.json", _json_lines([room.record() for room in chosen]))]
     if building.fixtures:
         beside(".luminaires.csv", _schedule(building.fixtures))
@@ -292,6 +305,13 @@ def _profile(text: str) -> tuple[str, Path]:
     return pattern, Path(file)
 
 
+def _target(text: str) -> tuple[str, str]:
+    pattern, _, target = text.partition("=")
+    if not pattern or not target:
+        raise argparse.ArgumentTypeError(f"'{text}': use GLOB=TARGET, rooms and what photile measure --target takes")
+    return pattern, target
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(
         prog="python3 -m photile.from_ifc",
@@ -308,13 +328,17 @@ def main() -> int:
     parser.add_argument("--ies", action="append", default=[], type=_profile, metavar="TYPE=FILE",
                         help="photometric file (.ies, .ldt) of the fixtures whose type fits a pattern; "
                              "repeatable")
+    parser.add_argument("--target", action="append", default=[], type=_target, metavar="GLOB=TARGET",
+                        help="target of rooms by number or name, such as Office*=office-desk; repeatable, the last "
+                             "that fits counts")
     parser.add_argument("--observers", action="store_true",
                         help="write four observers of each room, too, and print the command that rates "
                              "their glare")
     options = parser.parse_args()
 
     def work() -> None:
-        done = convert(options.ifc, options.output, options.rooms, options.ies, options.observers)
+        done = convert(options.ifc, options.output, options.rooms, options.ies, options.observers,
+                       options.target)
         for line in [*(f"warning: {line}" for line in dict.fromkeys(done.warnings)), *done.summary]:
             print(line, file=sys.stderr)
         print("\n".join(map(shlex.join, done.commands)))

@@ -23,6 +23,7 @@ import numpy as np
 from .arrangements import Arrangement, Designer, Room, most_luminaires
 from .errors import UsageError
 from .report import command as report
+from .report.tables import targets_of
 
 __all__ = ["main"]
 
@@ -44,7 +45,7 @@ class _Measured:
     def __init__(self, arrangement: Arrangement, record: dict[str, Any]) -> None:
         self.arrangement, self.record = arrangement, record
         self._grid = next(grid for grid in record["grids"] if grid["name"] == "working plane")
-        self._judgements = record.get("target", {}).get("judgements", [])
+        self._judgements = [one for target in targets_of(record) for one in target["judgements"]]
 
     @property
     def met(self) -> bool:
@@ -86,7 +87,7 @@ class _Measured:
         if watts > 0:
             lines.append(f"power: {watts:.4g} W, {density:.3g} W/m2, "
                          f"{100 * density / self.mean:.3g} W/m2 per 100 lx")
-        if target := self.record.get("target"):
+        for target in targets_of(self.record):
             reference = f" ({target['reference']})" if target["reference"] else ""
             lines.append(f"target {target['name']}{reference}: {_verdict(self.met)}")
             lines += [f"  {one['grid']}: {one['figure']} {one['value']:.4g}, at least "

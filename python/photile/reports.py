@@ -48,8 +48,9 @@ def write_report(
         Illuminances are those of one call of `measure`; daylight factors may stand beside them. A year, or
         glare, may stand alone.
     target : str
-        Requirements by name, such as "office-desk", or values, such as "Em=500,Uo=0.6"; the highest UGR is
-        that of the results. By default those that `measure` was given, which those of EN 1838 have to be.
+        Requirements of grids that have none, from their file or `measure`, by name, such as "office-desk", or
+        values, such as "Em=500,Uo=0.6"; UGR is that of the nearest observers of the results. `measure` has to
+        be given those of EN 1838.
     project, client, designer : str
         At the head of the report; with a client it ends with lines for signatures.
     logo : path, optional
@@ -113,14 +114,15 @@ def _record_of(measured: list[Illuminance], results: list[Results], target: str)
     if any(each._run is not run for each in measured):
         raise UsageError("results: these illuminances are of several calls; measure a list of grids")
     scene = run.scene
-    ratings = [(float(rating), float(error), name) for each in results if isinstance(each, Glare)
-               for rating, error, name in zip(each.ugr, each.ugr_error, each.names) if np.isfinite(rating)]
-    ugr, error, observer = max(ratings, default=(np.nan, np.nan, ""), key=lambda rating: rating[0])
+    observers = [(name, tuple(map(float, position)), float(rating), float(error))
+                 for each in results if isinstance(each, Glare)
+                 for name, position, rating, error in zip(each.names, each.positions, each.ugr, each.ugr_error)
+                 if np.isfinite(rating)]
     ground, sky = scene._sky
     stated = scene._north != 0 or ground is not None or any(each.grid.role == "wall" for each in measured)
     record = run.core.record({
         "target": target,
-        "ugr": (observer, ugr, error) if ratings else None,
+        "observers": observers,
         "ground": ground,
         "sky": list(sky),
         "north": scene._north if stated else None,

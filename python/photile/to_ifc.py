@@ -19,6 +19,7 @@ from typing import Any
 from .converters import exit_code, one_line, write_files
 from .errors import InputError, UsageError
 from .ifc_building import ifc_module, in_ifc_child, most_above_ceiling, open_ifc
+from .report.tables import targets_of
 
 __all__ = ["write"]
 
@@ -78,12 +79,13 @@ def _found(room: dict[str, Any], results: dict[str, Any], observers: list[dict[s
              if lamp["position"] and _holds(room, lamp["position"])]
     ugr = max((one["ugr"]["value"] for one in observers
                if one["ugr"] and one["name"].rpartition(" ")[0] == room["observers"]), default=None)
-    required, target = room["required_illuminance"], results.get("target", {})
-    verdicts = [one["met"] for one in target.get("judgements", ()) if one["grid"] == room["name"]]
+    required = room["required_illuminance"]
+    targets = [target for target in targets_of(results)
+               if any(one["grid"] == room["name"] for one in target["judgements"])]
+    verdicts = [one["met"] for target in targets for one in target["judgements"] if one["grid"] == room["name"]]
     if required is not None:
         verdicts.append(mean >= required)
-    if ugr is not None and target.get("ugr_limit"):
-        verdicts.append(ugr <= target["ugr_limit"])
+    verdicts += [ugr <= target["ugr_limit"] for target in targets if ugr is not None and target["ugr_limit"]]
     return _Found(mean, least, uniformity, sum(watts) if watts and all(watts) else None, ugr, required,
                   all(verdicts) if verdicts else None)
 

@@ -30,7 +30,7 @@ struct Lit {
   LightMix mix;
   std::optional<SceneLoadOptions> overcast = {};  ///< of daylight factors: the sky
   std::string mood = {};
-  std::string target = {};  ///< "" = none
+  bool direct = false;  ///< whether surfaces reflect nothing
 };
 
 /// What was measured, kept for reports.
@@ -40,10 +40,6 @@ struct Measuring {
   measuring::Measurement grids;
   std::vector<std::string> warnings;
 };
-
-bool is_direct(const std::string& target) {
-  return !target.empty() && measuring::parse_requirement(target).is_direct;
-}
 
 /// Under an overcast sky of 100 lux alone, so that lux are daylight factors in per cent. It takes
 /// the place of the sky that the scene has.
@@ -62,7 +58,9 @@ Lit under_overcast_sky(const SharedScene& scene, double ground, const py::dict& 
   return {std::move(under), std::move(mix), load};
 }
 
-Lit lit_for(const SharedScene& scene, const py::dict& options) {
+/// Grids without a target of their own get that of the options.
+Lit lit_for(const SharedScene& scene, const py::dict& options,
+            std::vector<measuring::SensorGrid>& grids) {
   const auto target = field<std::string>(options, "target");
   if (const auto ground = field<std::optional<double>>(options, "daylight_factor_ground")) {
     if (!target.empty()) {
@@ -71,12 +69,16 @@ Lit lit_for(const SharedScene& scene, const py::dict& options) {
           "the "
           "room by EN 17037 with photile.daylight");
     }
+    for (measuring::SensorGrid& grid : grids) grid.target.clear();
     return under_overcast_sky(scene, *ground, options);
   }
+  for (measuring::SensorGrid& grid : grids) {
+    if (grid.target.empty()) grid.target = target;
+  }
   Lit lit{scene, mix_of(*scene, options)};
-  lit.target = target;
+  lit.direct = measuring::are_direct(grids);
   lit.mood = field<std::string>(options, "mood");
-  if (is_direct(target)) {
+  if (lit.direct) {
     auto black = std::make_shared<Scene>(*scene);
     measuring::remove_reflections(*black);
     lit.scene = std::move(black);
@@ -100,11 +102,11 @@ MeasuringParameters parameters_of_measuring(const py::dict& options, const py::d
 std::shared_ptr<Measuring> measure(const SharedScene& scene, const py::list& places,
                                    const py::dict& options, const py::dict& settings,
                                    const py::object& progress) {
-  const auto grids = grids_of(places);
+  auto grids = grids_of(places);
   const auto device = field<std::string>(options, "device");
   const auto portals = field<std::vector<std::string>>(options, "portals");
   const MeasuringParameters parameters = parameters_of_measuring(options, settings);
-  const Lit lit = lit_for(scene, options);
+  const Lit lit = lit_for(scene, options, grids);
   return run(progress, [&](Progress& told) {
     const bool from_beyond = std::any_of(lit.scene->lights.begin(), lit.scene->lights.end(),
                                          [](const Light& light) { return light.is_distant(); });
@@ -190,24 +192,24 @@ py::object record_of(const Measuring& measured, const py::dict& facts) {
     run.sky = loading::sky_facts(*lit.overcast);
     if (!run.north) run.north = 0;
   }
-  auto target = field<std::string>(facts, "target");
-  if (target.empty()) target = lit.target;
-  if (is_direct(target) != is_direct(lit.target)) {
-    throw UsageError(is_direct(target)
-                         ? "target " + target +
-                               ": is about direct light alone; give it to photile.measure"
-                         : "target " + target + ": needs all light, and " + lit.target +
-                               " measured direct light alone; measure again");
+  const auto target = field<std::string>(facts, "target");
+  if (lit.overcast && !target.empty())
+    throw UsageError("target " + target + ": needs lux, not daylight factors");
+  measuring::Measurement grids = measured.grids;
+  for (measuring::GridValues& values : grids) {
+    if (values.grid.target.empty()) values.grid.target = target;
   }
-  if (!target.empty()) {
-    if (lit.overcast) throw UsageError("target " + target + ": needs lux, not daylight factors");
-    run.requirement = measuring::parse_requirement(target);
-    const double limit = run.requirement->glare;
-    const auto rated = field<std::optional<std::tuple<std::string, double, double>>>(facts, "ugr");
-    if (rated && limit > 0) {
-      const auto& [observer, value, error] = *rated;
-      run.glare = measuring::Judgement{observer, "UGR", limit, {value, error}, true};
-    }
+  using Rated = std::tuple<std::string, std::array<double, 3>, double, double>;
+  std::vector<measuring::RatedObserver> observers;
+  for (const auto& [name, place, ugr, error] : field<std::vector<Rated>>(facts, "observers")) {
+    observers.push_back({name, {place[0], place[1], place[2]}, {ugr, error}});
+  }
+  run.targets = measuring::judge_targets(grids, observers);
+  for (const auto& [requirement, judgements] : run.targets) {
+    if (requirement.is_direct == lit.direct) continue;
+    throw UsageError("target " + requirement.name +
+                     (lit.direct ? ": needs all light, and direct light alone was measured"
+                                 : ": is about direct light alone; give it to photile.measure"));
   }
   std::optional<glm::dvec3> inside;
   if (const auto place = field<std::optional<std::array<double, 3>>>(facts, "inside"))

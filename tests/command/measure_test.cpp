@@ -165,19 +165,24 @@ TEST_CASE("the maintenance factor and --light scale what is measured") {
 
 TEST_CASE("a target is judged in the table, the JSON and the report") {
   const FileFolder folder;
+  folder.write("desk.json", R"({"origin": [0, -0.2, 0.5], "u": [0.5, 0, 0], "v": [0, 0, -0.5],
+      "surroundings": 0.2, "target": "Em=99999"})");
   const Outcome outcome =
       succeed(measure(write_box(folder),
                       "--plane floor+0.75 --walls --ceiling --cylindrical-at floor+1.2 "
-                      "--semi-cylindrical-at floor+1.2 --target Em=1,Uo=0.999,Ewall=1 -o",
-                      folder / "a.json", "-o", folder / "a.html"));
+                      "--semi-cylindrical-at floor+1.2 --target Em=1,Uo=0.999,Ewall=1 --grid",
+                      folder / "desk.json", "-o", folder / "a.json", "-o", folder / "a.html"));
   CHECK_THAT(outcome.output, Contains("working plane: Em") && Contains("at least 1: met") &&
                                  Contains("NOT MET") && Contains("east wall") &&
                                  Contains("semi-cylindrical to the west"));
   const auto record = folder.json("a.json");
-  CHECK(record["target"]["judgements"][0]["met"] == true);
-  CHECK(record["target"]["judgements"][1]["met"] == false);
-  CHECK(record["grids"].size() == 1 + 4 + 1 + 1 + 4);
-  CHECK_THAT(folder.read("a.html"), Contains("not met"));
+  const auto &own = record["targets"][0], &others = record["targets"][1];
+  CHECK(own["judgements"].size() == 3);  // Em of the desk, Em and Uo of its surroundings
+  CHECK(own["judgements"][1]["required"] == 500);
+  CHECK(others["judgements"][0]["met"] == true);
+  CHECK(others["judgements"][1]["met"] == false);
+  CHECK(record["grids"].size() == 2 + 1 + 4 + 1 + 1 + 4);
+  CHECK_THAT(folder.read("a.html"), Contains("not met") && Contains("<p>Em=99999</p>"));
 }
 
 TEST_CASE("emergency lighting is measured by direct light alone") {
@@ -221,7 +226,7 @@ TEST_CASE("a report has the project, glare and a year beside its figures, and li
               std::string("Office <1>"), "--client", std::string("C & Co"), "--include",
               folder / "glare.json", "--include", folder / "year.json", "--logo",
               folder / "logo.png", "--maintenance LLMF=0.9,LMF=0.95 -o", folder / "a.html"));
-  CHECK_THAT(outcome.output, Contains("desk <2>: UGR 21.4, at most 19: NOT MET"));
+  CHECK_THAT(outcome.output, Contains("plane, desk <2>: UGR 21.4, at most 19: NOT MET"));
   const std::string page = folder.read("a.html");
   CHECK_THAT(page, Contains("<dd>Office &lt;1&gt;</dd>") && Contains("C &amp; Co") &&
                        Contains("signature") && Contains(">Glare</h2>") &&

@@ -313,14 +313,26 @@ TEST_CASE("walls, ceilings, cylinders and surroundings have requirements of thei
   CHECK(mean_of_surroundings(100) == 100);
 }
 
-TEST_CASE("rows that no source confirms say so, and the glare of observers is judged beside them") {
+TEST_CASE("each task is judged by its own target, and by the observers to whom it is the nearest") {
   CHECK_THAT(parse_requirement("archive").reference, Contains("not confirmed"));
-  const Requirement desk = parse_requirement("office-desk");
-  const Measurement measurement{grid(GridRole::task, {600, 600})};
-  CHECK_THAT(requirement_lines(measurement, desk)[3], Contains("see photile glare"));
-  const Judgement dazzled{"desk 2", "UGR", desk.glare, {22.4, 0.1}, true};
-  const auto lines = requirement_lines(measurement, desk, dazzled);
-  CHECK_THAT(lines[3], Contains("desk 2: UGR 22.4, at most 19: NOT MET"));
+  Measurement rooms;
+  for (const char* target : {"office-desk", "corridor", ""}) {
+    rooms.push_back(grid(GridRole::task, {90, 90}));
+    rooms.back().grid.target = target;
+    const glm::dvec3 middle(10.0 * static_cast<double>(rooms.size()), 0, 0);
+    for (Sensor& sensor : rooms.back().grid.sensors) sensor.position = middle;
+  }
+  const std::vector<RatedObserver> observers{{"a", {9, 1, 0}, {18.5, 0.1}},
+                                             {"b", {14, 1, 0}, {19.4, 0.1}},
+                                             {"c", {16, 1, 0}, {27.5, 0.1}},
+                                             {"d", {29, 1, 0}, {35.0, 0.1}}};
+  const auto lines = requirement_lines(judge_targets(rooms, observers));
+  REQUIRE(lines.size() == 10);
+  CHECK_THAT(lines[0], Contains("target office-desk (EN 12464-1:2021, table 34"));
+  CHECK(lines[3] == "  plane, b: UGR 19.4, at most 19: NOT MET");
+  CHECK(lines[6] == "  plane: Em 90, at least 100: NOT MET");
+  CHECK(lines[8] == "  plane, c: UGR 27.5, at most 28: met");
+  CHECK_THAT(requirement_lines(judge_targets(rooms))[3], Contains("see photile glare"));
 }
 
 TEST_CASE("a UGR below 10 is stated as data sheets do, and compared by its number") {

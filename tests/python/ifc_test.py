@@ -137,7 +137,10 @@ def test_elements_rooms_and_fixtures_are_where_the_model_has_them(room):
                            out / "a.luminaires.json"], capture_output=True, check=True)
     lights = {light["name"]: light["lumens"] for light in json.loads(info.stdout)["lights"]}
     assert lights[entries[1]["name"]] == pytest.approx(LUMENS, rel=1e-4)
-    assert converted(room / "room.ifc", "-o", out / "b.glb").returncode == 0
+    targets = [f"--target={one}" for one in ("*Büro=office-desk", "101=Em=300", "102*=corridor")]
+    assert "--target 102*: no room" in converted(room / "room.ifc", "-o", out / "b.glb", *targets).stderr
+    assert converted(room / "room.ifc", "-o", out / "b.glb", *targets[:2]).returncode == 0
+    assert json.loads((out / "b.grids.json").read_text()) == [{**grid, "target": "Em=300"}]
     assert (out / "a.glb").read_bytes() == (out / "b.glb").read_bytes()
 
 

@@ -108,9 +108,12 @@ def full(record):
     record["grids"] += [grid_of("desk surroundings", [1, 2, 3, 4, 5, 6])]
     record["grids"] += [grid_of("cylindrical", [100] * 6), grid_of("102", [200] * 6, level=10.75)]
     record["photometry"][0]["data"] += [["power", "50 W, 120 lm/W"], ["colour temperature", "4000 K"]]
-    record["target"] = {"name": "office-desk", "reference": "EN 12464-1:2021, table 34, required values",
-                        "what": "writing, typing, reading and data processing", "ugr_limit": 19, "ra": 80,
-                        "judgements": [{**JUDGED, "grid": "north wall", "value": 12500.5}]}
+    record["targets"] = [
+        {"name": "", "reference": f"EN 12464-1:2021, table {number}, required values", "what": what, "ugr_limit": 19,
+         "ra": 80, "judgements": judgements} for number, what, judgements in (
+            (34, "writing, typing, reading and data processing", [{**JUDGED, "grid": "north wall", "value": 12500.5},
+                                                                 JUDGED]),
+            (9, "circulation areas and corridors", [{**JUDGED, "grid": "102", "required": 100}]))]
     results = pathlib.Path(__file__).parent / "results"
     contents = [json.loads((results / name).read_text()) for name in ("observers.json", "planes.json")]
     record["report"] |= {"project": "P", "client": "C", "designer": "D", "included": [
@@ -133,7 +136,7 @@ def test_a_page_in_german_has_no_english_words(full):
             "UDI", "IES LM-83", "101", "102", "Level <1>", "desks", "Uo", "Good & Ltd \u00b7 a.ies"}
     units = re.compile(r"[-<\d.,;:\u00b1\u00d7\u00b2/() m]*(lm|lm/W|W|kWh|lx|m)?")
     assert {text for text in same - names if not units.fullmatch(text)} == set()
-    for text in ("Nutzebene, 1:50", "12.000 lm", "0,500", "8,33 W/m\u00b2; 4,17 W/m\u00b2 / 100 lx",
+    for text in ("Nutzebene, 1:50", "12.000 lm", "24,0 m\u00b2", "0,500", "8,33 W/m\u00b2; 4,17 W/m\u00b2 / 100 lx",
                  "4000 K", "desk: unmittelbarer Umgebungsbereich, 1:50", "1,50; 2,20; -1,00",
                  "\u00d7 1 Punkte sind ausgelassen: weniger als 0,25 m von einer Fläche."):
         assert text in texts_of(german), text
@@ -247,14 +250,16 @@ def test_contents_name_each_part_of_a_long_report(record):
 
 
 def test_each_room_of_a_building_has_a_row_and_a_page(record):
-    record["target"] = {"name": "Em=150", "reference": "", "what": "", "ugr_limit": 0, "ra": 0,
-                        "judgements": [JUDGED, {**JUDGED, "grid": "102", "met": False}]}
+    record["targets"] = [{"name": name, "reference": "EN", "what": what, "ugr_limit": 0, "ra": 0, "judgements": [
+        {**JUDGED, "grid": grid, "required": required, "met": required < 200}]} for name, what, grid, required in (
+            ("corridor", "corridors", "working plane", 150), ("Em=300", "", "102", 300))]
     record["grids"].append(grid_of("102", [100] * 6, level=10.75))
     record["report"]["included"] = [{"file": "", "content": [L_ROOM, FAR_ROOM]}]
     page = re.sub(r"\n\s*", "", page_of(record))
-    for part in ("<td>101</td><td>Level &lt;1&gt;</td><td>12.0</td><td>200</td><td>0.50</td><td>met</td>",
-                 "<td>102</td><td>Level &lt;1&gt;</td><td>12.0</td><td>100</td><td>1.00</td><td><b>not met</b></td>",
-                 "<th>Em, lux, at least 150</th>", "<dt>target met</dt><dd>1 / 2</dd>", "<dd>24.0 m\u00b2</dd>",
+    for part in ("<td>12.0</td><td>corridors</td><td>200 (150)</td><td>0.50</td><td>met</td>",
+                 "<td>12.0</td><td>Em=300</td><td>100 (300)</td><td>1.00</td><td><b>not met</b></td>",
+                 "<th>Em, lux (at least)</th>", "<dt>target</dt><dd>EN: corridors</dd>",
+                 "<td>102</td><td>Level &lt;1&gt;</td>", "<dt>target met</dt><dd>1 / 2</dd>", "<dd>24.0 m\u00b2</dd>",
                  "<dd>8.33 W/m\u00b2, 4.17 W/m\u00b2 / 100 lx</dd>", "<td>A1</td><td>lamp</td><td>point</td><td>101"):
         assert part in page, part
     assert page.count('class="room"') == 2 and ">9.00</text>" in page and page.count("<dd>100 W</dd>") == 2

@@ -92,6 +92,9 @@ std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const
     add({measuring::cylindrical_grid(scene, plane_at(plane, options.cylindrical_at))});
   if (!options.semi_cylindrical_at.empty())
     add(measuring::semi_cylindrical_grids(scene, at(options.semi_cylindrical_at)));
+  for (measuring::SensorGrid& grid : grids) {
+    if (grid.target.empty() || options.daylight_factor) grid.target = options.target;
+  }
   const std::size_t sensors = clear_of_furniture(plane, scene, grids, progress);
   if (sensors > limits::max_sensors) {
     throw UsageError(fmt::format("{} points together, more than {}; measure fewer", sensors,
@@ -125,9 +128,8 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (options.places.empty() && !options.of_room()) {
     throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
   }
-  std::optional<measuring::Requirement> requirement;
-  if (!options.target.empty()) requirement = measuring::parse_requirement(options.target);
-  if (options.daylight_factor && requirement) {
+  measuring::parse_requirement(options.target);
+  if (options.daylight_factor && !options.target.empty()) {
     throw UsageError(
         "--target needs lux, and --daylight-factor gives per cent; leave out one of them, or rate "
         "the room by EN 17037 with photile daylight");
@@ -140,8 +142,6 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
 
   const std::filesystem::path moods = moods_of_report(render.mood.file, render.scene);
   outputs.check_moods(moods);
-  std::optional<measuring::Judgement> glare;
-  if (requirement) glare = highest_glare(options.outputs.report.included, *requirement);
 
   const ThreadLimit threads(render.threads);
   TerminalProgress progress(render.quiet || !leads());
@@ -149,8 +149,8 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   const LightMix mix =
       options.daylight_factor ? mix_of_sky(render.load, scene, render) : mix_of(scene, render);
   tell_scene(scene, mix, render.load, progress);
-  if (requirement && requirement->is_direct) measuring::remove_reflections(scene);
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
+  if (measuring::are_direct(grids)) measuring::remove_reflections(scene);
   outputs.check_names(grids);
   scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
   std::vector<Device> devices = devices_for(render, progress);
@@ -184,8 +184,10 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
     }
   }
   outputs.check_picture(scene, progress);
+  const auto targets =
+      measuring::judge_targets(measurement, observers_in(options.outputs.report.included));
   outputs.write(measurement,
-                {scene, mix, parameters, render.mood.mood, requirement, glare,
+                {scene, mix, parameters, render.mood.mood, targets,
                  outputs.any_record()
                      ? measuring::room_size(scene, plane_at(options.places.plane, "floor").inside)
                      : std::nullopt,
@@ -196,10 +198,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
     std::cout << line << '\n';
   }
   for (const auto& line : sky_lines(render.load)) std::cout << line << '\n';
-  if (requirement) {
-    for (const auto& line : measuring::requirement_lines(measurement, *requirement, glare))
-      std::cout << line << '\n';
-  }
+  for (const auto& line : measuring::requirement_lines(targets)) std::cout << line << '\n';
 }
 
 void add_places(CLI::App& command, MeasureOptions& options) {
@@ -221,8 +220,8 @@ void add_measuring(CLI::App& command, MeasureOptions& options) {
                  "per cent of the illuminance on open ground under the CIE overcast sky; .csv, "
                  ".json, .svg, .dxf");
   measuring.add("--target", options.target, "NAME|VALUES",
-                "requirements, by name (office-desk: EN 12464-1; escape-route: EN 1838, by direct "
-                "light alone) or values (Em=500,Uo=0.6)");
+                "requirements of grids whose file names none, by name (office-desk: EN 12464-1; "
+                "escape-route: EN 1838, by direct light alone) or values (Em=500,Uo=0.6)");
   add_maintenance_option(measuring, options.parameters, &options.outputs.maintenance);
   add_sensor_options(measuring, options.parameters);
 }

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <optional>
 #include <utility>
 
 #include "command/command_line.hpp"
@@ -199,21 +200,20 @@ void write_honeybee(const fs::path& folder,
   run_program(record_of(scratch.path()), scratch.path(), {"--honeybee", folder.string()});
 }
 
-std::optional<measuring::Judgement> highest_glare(const nlohmann::ordered_json& included,
-                                                  const measuring::Requirement& requirement) {
-  std::optional<measuring::Judgement> highest;
+std::vector<measuring::RatedObserver> observers_in(const nlohmann::ordered_json& included) {
+  std::vector<measuring::RatedObserver> observers;
   for (const auto& result : included) {
     const auto& content = result.at("content");
-    if (!(requirement.glare > 0) || !content.contains("observers")) continue;
+    if (!content.contains("observers")) continue;
     for (const auto& observer : content.at("observers")) {
-      const auto& rating = observer.at("ugr");
+      const auto &rating = observer.at("ugr"), &place = observer.at("position");
       if (rating.is_null()) continue;
-      const Measured measured{rating.at("value"), rating.at("standard_error")};
-      if (highest && highest->measured.value >= measured.value) continue;
-      highest = {observer.at("name"), "UGR", requirement.glare, measured, true};
+      observers.push_back({observer.at("name"),
+                           {place.at(0), place.at(1), place.at(2)},
+                           {rating.at("value"), rating.at("standard_error")}});
     }
   }
-  return highest;
+  return observers;
 }
 
 }  // namespace photile::app

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,9 +62,7 @@ void write_honeybee(
     const std::filesystem::path& folder,
     const std::function<nlohmann::ordered_json(const std::filesystem::path& scratch)>& record_of);
 
-/// The highest UGR of all observers that the included results have, where one is required.
-/// The results have been checked.
-std::optional<measuring::Judgement> highest_glare(const nlohmann::ordered_json& included,
-                                                  const measuring::Requirement& requirement);
+/// The observers of the included results, which have been checked.
+std::vector<measuring::RatedObserver> observers_in(const nlohmann::ordered_json& included);
 
 }  // namespace photile::app

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -81,6 +82,27 @@ void add(std::vector<Judgement>& all, const GridValues& values, const char* figu
   if (required > 0) all.push_back({values.grid.name, figure, required, measured});
 }
 
+/// Of each grid the observer with the highest UGR of those to whom no other task is nearer; null
+/// where there is none.
+std::vector<const RatedObserver*> dazzled_most(const Measurement& measurement,
+                                               std::span<const RatedObserver> observers) {
+  std::vector<const RatedObserver*> most(measurement.size() + 1);  // the last is of no task
+  for (const RatedObserver& observer : observers) {
+    std::size_t nearest = measurement.size();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < measurement.size(); ++i) {
+      if (measurement[i].grid.role != GridRole::task) continue;
+      for (const Sensor& sensor : measurement[i].grid.sensors) {
+        const double distance = glm::distance(sensor.position, observer.position);
+        if (distance < least) least = distance, nearest = i;
+      }
+    }
+    const RatedObserver*& found = most[nearest];
+    if (!found || observer.ugr.value > found->ugr.value) found = &observer;
+  }
+  return most;
+}
+
 }  // namespace
 
 std::span<const Requirement> known_requirements() {
@@ -127,6 +149,17 @@ double mean_of_surroundings(double task_mean) {
   return std::min(task_mean, 150.0);
 }
 
+bool are_direct(std::span<const SensorGrid> grids) {
+  const auto direct = std::ranges::count_if(
+      grids, [](const SensorGrid& grid) { return parse_requirement(grid.target).is_direct; });
+  if (direct != 0 && direct != std::ssize(grids)) {
+    throw UsageError(
+        "targets of emergency lighting count direct light alone; measure their grids in a run "
+        "without others");
+  }
+  return direct > 0;
+}
+
 std::vector<Judgement> judge(const GridValues& values, const Requirement& requirement) {
   std::vector<Judgement> all;
   const GridStatistics& figures = values.total().statistics;
@@ -165,26 +198,42 @@ std::vector<Judgement> judge(const GridValues& values, const Requirement& requir
   return all;
 }
 
-std::vector<std::string> requirement_lines(const Measurement& measurement,
-                                           const Requirement& requirement,
-                                           const std::optional<Judgement>& glare) {
-  std::vector<std::string> lines{"target " + requirement.name};
-  if (!requirement.reference.empty()) {
-    lines.front() += fmt::format(" ({}: {})", requirement.reference, requirement.what);
-  }
-  for (const GridValues& values : measurement) {
-    for (const Judgement& judgement : judge(values, requirement)) {
-      lines.push_back("  " + judgement_text(judgement));
+std::vector<JudgedTarget> judge_targets(const Measurement& measurement,
+                                        std::span<const RatedObserver> observers) {
+  const std::vector<const RatedObserver*> most = dazzled_most(measurement, observers);
+  std::vector<JudgedTarget> all;
+  for (std::size_t i = 0; i < measurement.size(); ++i) {
+    const SensorGrid& grid = measurement[i].grid;
+    if (grid.target.empty()) continue;
+    auto target =
+        std::ranges::find(all, grid.target, [](const auto& one) { return one.requirement.name; });
+    if (target == all.end()) target = all.insert(target, {parse_requirement(grid.target), {}});
+    auto& [requirement, judgements] = *target;
+    for (Judgement& one : judge(measurement[i], requirement)) judgements.push_back(std::move(one));
+    if (most[i] && requirement.glare > 0) {
+      judgements.push_back(
+          {grid.name, "UGR", requirement.glare, most[i]->ugr, true, most[i]->name});
     }
   }
-  if (glare) {
-    lines.push_back("  " + judgement_text(*glare));
-  } else if (requirement.glare > 0) {
-    lines.push_back(fmt::format("  UGR at most {:g}: see photile glare", requirement.glare));
-  }
-  if (requirement.rendering > 0) {
-    lines.push_back(
-        fmt::format("  Ra at least {:g}: see the lamps' data sheets", requirement.rendering));
+  return all;
+}
+
+std::vector<std::string> requirement_lines(std::span<const JudgedTarget> targets) {
+  std::vector<std::string> lines;
+  for (const auto& [requirement, judgements] : targets) {
+    lines.push_back("target " + requirement.name);
+    if (!requirement.reference.empty()) {
+      lines.back() += fmt::format(" ({}: {})", requirement.reference, requirement.what);
+    }
+    for (const Judgement& judgement : judgements) lines.push_back("  " + judgement_text(judgement));
+    const bool rated = std::ranges::count(judgements, "UGR", &Judgement::figure) > 0;
+    if (requirement.glare > 0 && !rated) {
+      lines.push_back(fmt::format("  UGR at most {:g}: see photile glare", requirement.glare));
+    }
+    if (requirement.rendering > 0) {
+      lines.push_back(
+          fmt::format("  Ra at least {:g}: see the lamps' data sheets", requirement.rendering));
+    }
   }
   return lines;
 }
@@ -201,9 +250,10 @@ std::string judgement_text(const Judgement& judgement) {
   const std::string value = ratio    ? fmt::format("{:.3f}", measured)
                             : rating ? glare_text(measured, "{:.4g}")
                                      : fmt::format("{:.4g}", measured);
-  return fmt::format("{}: {} {}, {} {:g}: {}{}", judgement.grid, judgement.figure, value,
-                     judgement.at_most ? "at most" : "at least", judgement.required,
-                     judgement.met() ? "met" : "NOT MET",
+  const std::string& observer = judgement.observer;
+  return fmt::format("{}{}{}: {} {}, {} {:g}: {}{}", judgement.grid, observer.empty() ? "" : ", ",
+                     observer, judgement.figure, value, judgement.at_most ? "at most" : "at least",
+                     judgement.required, judgement.met() ? "met" : "NOT MET",
                      judgement.doubtful() ? ", within two standard errors" : "");
 }
 

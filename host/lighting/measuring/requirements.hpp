@@ -1,7 +1,7 @@
 // What standards require of the light in a room, and whether a measurement has it.
 #pragma once
 
-#include <optional>
+#include <glm/glm.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,8 +33,12 @@ struct Requirement {
 std::span<const Requirement> known_requirements();
 
 /// "office-desk", or values of one's own: "Em=300,Uo=0.6,UGR=19", any of Em, Uo, Emin, Ud,
-/// UGR, Ra, Ez, Ewall, Eceiling. Errors: UsageError that lists the names.
+/// UGR, Ra, Ez, Ewall, Eceiling; "" requires nothing. Errors: UsageError that lists the names.
 Requirement parse_requirement(const std::string& text);
+
+/// Whether the targets of these grids count direct light alone. Errors: UsageError where only some
+/// do.
+bool are_direct(std::span<const SensorGrid> grids);
 
 /// One figure of a grid beside what is required.
 struct Judgement {
@@ -42,7 +46,8 @@ struct Judgement {
   std::string figure;  ///< "Em", "Uo", "Emin", "Ud", "UGR"
   double required = 0;
   Measured measured;
-  bool at_most = false;  ///< whether the requirement is an upper limit
+  bool at_most = false;       ///< whether the requirement is an upper limit
+  std::string observer = {};  ///< of UGR, beside the grid; "" = the grid's own name says it
   /// Whether it is met. Within two standard errors of the limit it could be either.
   bool met() const;
   bool doubtful() const;
@@ -54,11 +59,26 @@ struct Judgement {
 /// not judged.
 std::vector<Judgement> judge(const GridValues& values, const Requirement& requirement);
 
-/// All grids' judgements under a heading, that of `glare` where it is known, and what a program
-/// cannot judge.
-std::vector<std::string> requirement_lines(const Measurement& measurement,
-                                           const Requirement& requirement,
-                                           const std::optional<Judgement>& glare = std::nullopt);
+/// Who sees luminaires.
+struct RatedObserver {
+  std::string name;
+  glm::dvec3 position{0.0};  ///< of the eyes, as those of sensors
+  Measured ugr;
+};
+
+/// A requirement beside all that is judged by it.
+struct JudgedTarget {
+  Requirement requirement;
+  std::vector<Judgement> judgements;
+};
+
+/// The targets of the grids, in the order of the first of each. A task that is nearer to some
+/// observers than others are has the highest UGR of these.
+std::vector<JudgedTarget> judge_targets(const Measurement& measurement,
+                                        std::span<const RatedObserver> observers = {});
+
+/// The judgements under a heading each, and what a program cannot judge.
+std::vector<std::string> requirement_lines(std::span<const JudgedTarget> targets);
 
 /// E_m of the immediate surroundings of a task: EN 12464-1:2021, table 2.
 double mean_of_surroundings(double task_mean);

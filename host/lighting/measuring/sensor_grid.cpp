@@ -16,6 +16,7 @@
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "common/json_object.hpp"
+#include "measuring/requirements.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photile/scene.hpp"
@@ -185,7 +186,15 @@ SensorGrid grid_of(const JsonObject& plane, const std::string& name, const Outli
   });
   if (layout.cells.empty())
     plane.refuse("no point lies in 'outline'; enlarge it or reduce 'spacing'");
-  return grid_on_plane(plane.text("name", name), std::move(layout));
+  SensorGrid grid = grid_on_plane(plane.text("name", name), std::move(layout));
+  if (!plane.has("target")) return grid;
+  grid.target = plane.text("target", "");
+  try {
+    parse_requirement(grid.target);
+  } catch (const UsageError& error) {
+    plane.refuse(error.what());
+  }
+  return grid;
 }
 
 /// The band around an area whose width in metres a key gives. Its cells are as wide as the area's,
@@ -263,7 +272,7 @@ std::vector<SensorGrid> read_planes(const std::filesystem::path& file) {
     const std::string number = list.size() > 1 ? std::to_string(i + 1) : "";
     const JsonObject plane(list[i], fmt::format("{}: plane {}", file.string(), i + 1),
                            {"name", "origin", "u", "v", "outline", "spacing", "columns", "rows",
-                            "surroundings", "background"});
+                            "surroundings", "background", "target"});
     const Outline outline =
         plane.has("outline") ? outline_of(plane, list[i]["outline"]) : Outline();
     grids.push_back(grid_of(plane, file.stem().string() + number, outline));
@@ -273,6 +282,7 @@ std::vector<SensorGrid> read_planes(const std::filesystem::path& file) {
       if (!plane.has(key)) continue;
       SensorGrid band = band_around(plane, key, *grids.back().layout, role, outline, *task.layout);
       band.name = task.name + " " + key;
+      band.target = task.target;
       grids.push_back(std::move(band));
     }
   }

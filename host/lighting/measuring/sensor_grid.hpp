@@ -51,6 +51,7 @@ struct SensorGrid {
   std::optional<PlaneLayout> layout;    ///< of a plane
   std::vector<BlankPoint> blanks = {};  ///< in the order of the grid
   GridRole role = GridRole::task;
+  std::string target = {};  ///< its requirement, as parse_requirement reads it; "" = none
   std::string remark = {};  ///< what the user should know of its position; "" = nothing
   bool chosen = false;      ///< by the program, which leaves out points that are in the way
   /// Of each sensor why its value is doubtful, "" = it is not; empty = none is.
@@ -91,7 +92,8 @@ PlaneLayout full_plane(const glm::dvec3& origin, const glm::dvec3& u, const glm:
 /// scene file's world, which faces u x v. Without a spacing it is that of EN 12464-1. Of a plane
 /// with an "outline" [[x, y], ...], metres along u and v, only points within it are kept. With
 /// "surroundings" the band of this many metres around it is a separate grid, and with "background"
-/// the band around that; a task comes first. Errors: InputError naming file, plane and key.
+/// the band around that; a task comes first, and all have its "target". Errors: InputError naming
+/// file, plane and key.
 std::vector<SensorGrid> read_planes(const std::filesystem::path& file);
 
 /// Reads lines of six numbers: x y z of a point in metres and the direction that it faces, of any

@@ -81,13 +81,12 @@ void add_scene(const Scene& scene, const LightMix& mix, Json& record) {
   record["reflectances"] = std::move(surfaces);
 }
 
-Json target_json(const measuring::Measurement& measurement,
-                 const measuring::Requirement& requirement,
-                 const std::optional<measuring::Judgement>& glare) {
+Json target_json(const measuring::JudgedTarget& target) {
+  const auto& [requirement, judgements] = target;
   Json json{{"name", requirement.name},    {"reference", requirement.reference},
             {"what", requirement.what},    {"ugr_limit", requirement.glare},
             {"ra", requirement.rendering}, {"judgements", Json::array()}};
-  const auto add = [&](const measuring::Judgement& judgement) {
+  for (const measuring::Judgement& judgement : judgements) {
     json["judgements"].push_back({{"grid", judgement.grid},
                                   {"figure", judgement.figure},
                                   {"required", judgement.required},
@@ -96,11 +95,8 @@ Json target_json(const measuring::Measurement& measurement,
                                   {"standard_error", judgement.measured.standard_error},
                                   {"met", judgement.met()},
                                   {"doubtful", judgement.doubtful()}});
-  };
-  for (const auto& values : measurement) {
-    for (const auto& judgement : measuring::judge(values, requirement)) add(judgement);
+    if (!judgement.observer.empty()) json["judgements"].back()["observer"] = judgement.observer;
   }
-  if (glare) add(*glare);
   return json;
 }
 
@@ -239,7 +235,7 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
     record["lights"].push_back(
         {{"name", light.name}, {"power", light.power}, {"unit", symbol_of(light.unit)}});
   }
-  if (run.requirement) record["target"] = target_json(measurement, *run.requirement, run.glare);
+  for (const auto& target : run.targets) record["targets"].push_back(target_json(target));
   if (const auto& room = run.room) {
     record["room"] = {
         {"area", room->area}, {"sides", {room->sides.x, room->sides.y}}, {"height", room->height}};

@@ -61,8 +61,7 @@ struct MeasureRun {
   const LightMix& mix;
   const MeasuringParameters& parameters;
   std::string mood = {};  ///< "" = none
-  std::optional<measuring::Requirement> requirement = std::nullopt;
-  std::optional<measuring::Judgement> glare = std::nullopt;  ///< the highest UGR that is included
+  std::vector<measuring::JudgedTarget> targets = {};
   std::optional<measuring::RoomSize> room = std::nullopt;
   std::optional<double> ground = std::nullopt;  ///< its reflectance; none without a sky
   /// What the sky is: name and value.

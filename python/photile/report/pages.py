@@ -21,7 +21,7 @@ from .melanopic import melanopic_table
 from .plans import Curve, Plan, sheets
 from .rooms import Building, Room, RoomResults
 from .scale import fitted
-from .tables import Table, table
+from .tables import Table, table, targets_of
 
 most_light_plans = 6  # more do not fit on a page
 most_without_contents = 3  # parts of a report that begin a page, after the first page
@@ -203,8 +203,8 @@ class Report:
         values = {
             "record": record, "about": about, "language": about["language"], "unit": "%" if self._factors else "lux",
             "symbol": "D" if self._factors else "E", "factors": self._factors,
-            "energy": self._energy(), "facts": self._facts(), "judgements": self._judgements(),
-            "building": self._building.facts(),
+            "energy": self._energy(), "facts": self._facts(), "targets": self._targets(),
+            "building": [(name, self._words.figure(value)) for name, value in self._building.facts()],
             "table_of_rooms": self._building.table() if self._building.rooms else None,
             "rooms": [self._room(one) for one in self._building.rooms if one.grids],
             "grids": [self._grid(grid) for grid in self._building.others], "maps": self._maps(),
@@ -220,6 +220,7 @@ class Report:
     def _room(self, one: RoomResults) -> dict[str, Any]:
         """A room's own page."""
         facts = [(name, self._words.figure(value)) for name, value in one.facts() if value]
+        facts += [("target", self._of_target(target)) for target in one.targets]
         judgements = self._shown(one.judgements)
         named = any(each["grid"] != one.room.name for each in judgements)
         parts = one.parts(self._luminaires)
@@ -275,14 +276,20 @@ class Report:
         return [{**each, "text": self._words.figure(texts.glare(each["value"]))} if each["figure"] == "UGR" else each
                 for each in judgements]
 
-    def _judgements(self) -> list[dict[str, Any]]:
-        """Required and measured values side by side, but for those of rooms."""
-        target = self._record.get("target")
-        if not target:
-            return []
+    def _of_target(self, target: dict[str, Any]) -> str:
+        return (f"{self._words(target['reference'])}: {self._words(target['what'])}" if target["reference"]
+                else str(target["name"]))
+
+    def _targets(self) -> list[dict[str, Any]]:
+        """Of each target its name, and required and measured values side by side."""
+        return [{"name": self._of_target(target), "rows": self._judgements(target)}
+                for target in targets_of(self._record)]
+
+    def _judgements(self, target: dict[str, Any]) -> list[dict[str, Any]]:
+        """Those of a target, but for those of rooms."""
         of_rooms = [each for one in self._building.rooms for each in one.judgements]
         rows = self._shown([each for each in target["judgements"] if each not in of_rooms])
-        if target["ugr_limit"] > 0 and not any(each["figure"] == "UGR" for each in rows):
+        if target["ugr_limit"] > 0 and not any(each["figure"] == "UGR" for each in target["judgements"]):
             rows.append({"grid": "", "figure": "UGR", "at_most": True, "required": target["ugr_limit"],
                          "text": self._words("see photile glare"), "met": None})
         if target["ra"] > 0:

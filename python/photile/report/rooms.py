@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import texts
 from .luminaires import Luminaires
-from .tables import Table, table
+from .tables import Table, table, targets_of
 
 Floats = NDArray[np.float64]
 
@@ -55,6 +55,7 @@ class Room:
 class RoomResults:
     """What a record has of a room.
 
+    targets      those by which its grids are judged
     judgements   of its grids: what is required beside what is measured
     lamps        the luminaires in it, as the record has them
     watts        of these; 0 = not known of all
@@ -62,6 +63,7 @@ class RoomResults:
 
     room: Room
     grids: list[dict[str, Any]]
+    targets: list[dict[str, Any]]
     judgements: list[dict[str, Any]]
     lamps: list[dict[str, Any]]
     watts: float
@@ -105,7 +107,8 @@ class Building:
         grids = record.get("grids", [])
         points = [np.array([sensor["position"] for sensor in grid["sensors"]], float).reshape(-1, 3) for grid in grids]
         places = np.array([lamp["position"] for lamp in luminaires.rows], float).reshape(-1, 3)
-        judgements = (record.get("target") or {}).get("judgements", [])
+        targets = targets_of(record)
+        judgements = [each for target in targets for each in target["judgements"]]
         self._named = {"Em": "mean, %"} if record.get("unit") == "DF %" else {"Em": "Em, lux", "Emin": "Emin, lux"}
         self.rooms: list[RoomResults] = []
         room_of = [next((room for room in rooms if 2 * np.count_nonzero(room.holds(some)) > len(some)), None)
@@ -116,8 +119,9 @@ class Building:
             names = {grid["name"] for grid in own}
             lamps = [lamp for lamp, held in zip(luminaires.rows, room.holds(places)) if held]
             watts = [luminaires.watts(lamp) for lamp in lamps]
-            self.rooms.append(RoomResults(room, own, [each for each in judgements if each["grid"] in names], lamps,
-                                          sum(watts) if all(watts) else 0.0))
+            self.rooms.append(RoomResults(
+                room, own, [one for one in targets if any(each["grid"] in names for each in one["judgements"])],
+                [each for each in judgements if each["grid"] in names], lamps, sum(watts) if all(watts) else 0.0))
 
     @property
     def area(self) -> float:
@@ -126,26 +130,35 @@ class Building:
 
     def table(self) -> Table:
         """The first grid of each room, and whether the room has all that is required of it."""
-        first = {id(one): one.grids[0] for one in self.rooms if one.grids}
-        names = {grid["name"] for grid in first.values()}
-        required: dict[str, set[float]] = {"Em": set(), "Uo": set()}
-        for each in (each for one in self.rooms for each in one.judgements):
-            if each["grid"] in names and each["figure"] in ("Em", "Emin", "Uo", "Ud"):
-                required.setdefault(each["figure"], set()).add(each["required"])
+        required: dict[str, dict[int, float]] = {"Em": {}, "Uo": {}}  # of each figure, by room
+        for one in self.rooms:
+            for each in one.judgements:
+                if each["grid"] == one.grids[0]["name"] and each["figure"] in ("Em", "Emin", "Uo", "Ud"):
+                    required.setdefault(each["figure"], {})[id(one)] = each["required"]
+        differ = {figure for figure, of_room in required.items() if len(set(of_room.values())) > 1}
 
         def heading(figure: str) -> str:
             name = self._named.get(figure, figure)
-            least = " / ".join(f"{one:g}" for one in sorted(required[figure]))
-            return f"{name}, at least {least}" if least else name
+            if figure in differ:
+                return f"{name} (at least)"
+            return f"{name}, at least {min(required[figure].values()):g}" if required[figure] else name
 
         def cell(one: RoomResults, figure: str) -> str:
-            value = first[id(one)]["statistics"][figure]["value"] if one.grids else None
-            return "" if value is None else texts.number(value, 3) if figure.startswith("E") else f"{value:.2f}"
+            value = one.grids[0]["statistics"][figure]["value"] if one.grids else None
+            if value is None:
+                return ""
+            text = texts.number(value, 3) if figure.startswith("E") else f"{value:.2f}"
+            least = required[figure].get(id(one)) if figure in differ else None
+            return text if least is None else f"{text} ({least:g})"
 
-        rows = [[one.room.name, one.room.storey, f"{one.room.area:.1f}", *(cell(one, figure) for figure in required),
-                 "" if one.met is None else "met" if one.met else "not met"] for one in self.rooms]
-        return table("Rooms", ["room", "storey", "floor area, m²", *map(heading, required), "target"], rows,
-                     words=(3 + len(required),), names=(0, 1), kind="rooms")
+        use = [" / ".join(target["what"] or target["name"] for target in one.targets) for one in self.rooms]
+        several = len(set(use)) > 1
+        rows = [[one.room.name, one.room.storey, f"{one.room.area:.1f}", *([text] if several else []),
+                 *(cell(one, figure) for figure in required),
+                 "" if one.met is None else "met" if one.met else "not met"] for one, text in zip(self.rooms, use)]
+        columns = ["room", "storey", "floor area, m²", *(["use"] if several else []), *map(heading, required), "target"]
+        return table("Rooms", columns, rows, words=(3, len(columns) - 1) if several else (len(columns) - 1,),
+                     names=(0, 1), kind="rooms")
 
     def facts(self) -> list[tuple[str, str]]:
         """Of all rooms together."""
