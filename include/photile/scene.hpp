@@ -85,14 +85,15 @@ struct LuminousOpening {
   double projected_area(const glm::dvec3& direction) const;
 };
 
-/// The data of a photometric file about its luminaire beside the intensities; "" and 0 = not
-/// stated.
+/// The data of a photometric file about its luminaire beside the intensities, in which a list of
+/// luminaires may state its own; "" and 0 = not stated.
 struct LuminaireData {
   std::string maker, article, luminaire, source;  ///< UTF-8; `source`: the lamps in it
   double watts = 0;                               ///< electrical power that the luminaire draws
   double kelvin = 0;                              ///< correlated colour temperature
   double highest_kelvin = 0;                      ///< where it is tunable from `kelvin` on
   double rendering = 0;                           ///< Ra, at least
+  double maintenance = 0;                         ///< maintenance factor, of a list of luminaires
 };
 
 /// Intensities on a grid of polar angles and azimuths, bilinear in the two angles between them and

@@ -19,6 +19,7 @@ from typing import Any
 from .converters import exit_code, one_line, write_files
 from .errors import InputError, UsageError
 from .ifc_building import ifc_module, in_ifc_child, most_above_ceiling, open_ifc
+from .report.luminaires import kind_of
 from .report.tables import targets_of
 
 __all__ = ["write"]
@@ -33,6 +34,7 @@ class _Found:
     mean: float  # lux
     least: float  # lux
     uniformity: float
+    maintenance: float | None  # factor; None where its luminaires differ
     watts: float | None  # of its luminaires; None where a photometric file does not state it
     ugr: float | None  # the highest of its observers
     required: float | None  # lux, as the IFC file has it
@@ -74,9 +76,11 @@ def _found(room: dict[str, Any], results: dict[str, Any], observers: list[dict[s
     if grid is None:
         return None
     mean, least, uniformity = (float(grid["statistics"][name]["value"]) for name in ("Em", "Emin", "Uo"))
-    watts_of = {file["name"]: file["watts"] / file["pieces"] for file in results["photometry"]}
-    watts = [watts_of.get(lamp["file"], 0.0) for lamp in results["luminaires"]
-             if lamp["position"] and _holds(room, lamp["position"])]
+    watts_of = {kind_of(file, "name"): file["watts"] / file["pieces"] for file in results["photometry"]}
+    lamps = [lamp for lamp in results["luminaires"] if lamp["position"] and _holds(room, lamp["position"])]
+    watts = [watts_of.get(kind_of(lamp), 0.0) for lamp in lamps]
+    factor = float(results["maintenance_factor"])
+    factors = {float(lamp.get("maintenance_factor", factor)) for lamp in lamps} or {factor}
     ugr = max((one["ugr"]["value"] for one in observers
                if one["ugr"] and one["name"].rpartition(" ")[0] == room["observers"]), default=None)
     required = room["required_illuminance"]
@@ -86,8 +90,8 @@ def _found(room: dict[str, Any], results: dict[str, Any], observers: list[dict[s
     if required is not None:
         verdicts.append(mean >= required)
     verdicts += [ugr <= target["ugr_limit"] for target in targets if ugr is not None and target["ugr_limit"]]
-    return _Found(mean, least, uniformity, sum(watts) if watts and all(watts) else None, ugr, required,
-                  all(verdicts) if verdicts else None)
+    return _Found(mean, least, uniformity, factors.pop() if len(factors) == 1 else None,
+                  sum(watts) if watts and all(watts) else None, ugr, required, all(verdicts) if verdicts else None)
 
 
 class _Properties:
@@ -105,11 +109,12 @@ class _Properties:
         value = self._model.create_entity(measure, float(f"{value:.4g}") if measure != "IfcBoolean" else value)
         return self._model.create_entity("IfcPropertySingleValue", Name=name, NominalValue=value, Unit=unit)
 
-    def _of(self, found: _Found, maintenance: float) -> list[Any]:
+    def _of(self, found: _Found) -> list[Any]:
         properties = [self._property("AverageIlluminance", "IfcIlluminanceMeasure", found.mean, self._lux),
                       self._property("MinimumIlluminance", "IfcIlluminanceMeasure", found.least, self._lux),
-                      self._property("Uniformity", "IfcNormalisedRatioMeasure", found.uniformity),
-                      self._property("MaintenanceFactor", "IfcNormalisedRatioMeasure", maintenance)]
+                      self._property("Uniformity", "IfcNormalisedRatioMeasure", found.uniformity)]
+        if found.maintenance is not None:
+            properties.append(self._property("MaintenanceFactor", "IfcNormalisedRatioMeasure", found.maintenance))
         if found.watts is not None:
             properties.append(self._property("InstalledPower", "IfcPowerMeasure", found.watts, self._watt))
         if found.ugr is not None:
@@ -118,7 +123,7 @@ class _Properties:
             properties.append(self._property("RequirementsMet", "IfcBoolean", found.met))
         return properties
 
-    def write(self, space: Any, found: _Found, maintenance: float) -> None:
+    def write(self, space: Any, found: _Found) -> None:
         """Give a space its set, or what it has of it new values."""
         sets = [rel.RelatingPropertyDefinition for rel in space.IsDefinedBy
                 if rel.is_a("IfcRelDefinesByProperties")]
@@ -128,7 +133,7 @@ class _Properties:
             known = self._entity("IfcPropertySet", space, Name=_set)
             self._entity("IfcRelDefinesByProperties", space, RelatedObjects=[space],
                          RelatingPropertyDefinition=known)
-        known.HasProperties, known.Description = self._of(found, maintenance), self._title
+        known.HasProperties, known.Description = self._of(found), self._title
         for one in old:
             if not self._model.get_inverse(one):
                 self._model.remove(one)
@@ -173,7 +178,6 @@ def write(ifc: Path, rooms: Path, results: Path, output: Path,
         observers = _read(glare)["observers"] if glare else []
         found = {room["global_id"]: (room["name"], one) for room in listed
                  if (one := _found(room, record, observers)) is not None}
-        maintenance = float(record["maintenance_factor"])
         title = f"photile {record['photile']}, {record['date']}"
         if (record["unit"], record["response"]) != ("lux", "planar"):
             raise InputError(f"{results}: these are not lux on a plane; measure without --daylight-factor "
@@ -192,11 +196,11 @@ def write(ifc: Path, rooms: Path, results: Path, output: Path,
     lines, warnings = [], []
     for number, (name, one) in found.items():
         if number in spaces:
-            properties.write(spaces[number], one, maintenance)
+            properties.write(spaces[number], one)
             lines.append(one.line(one_line(name)))
     if len(spaces) < len(found):
         warnings.append(f"{len(found) - len(spaces)} rooms are not in {ifc}")
-    if maintenance == 1 and any(one.required is not None for _, one in found.values()):
+    if any(one.maintenance == 1 and one.required is not None for _, one in found.values()):
         warnings.append("requirements are compared with a new installation; measure with --maintenance")
     write_files({output: model.to_string().encode()})
     return lines, warnings

@@ -118,7 +118,7 @@ std::shared_ptr<Measuring> measure(const SharedScene& scene, const py::list& pla
     }
     const measuring::Readings readings =
         with_devices(parameters.by_paths, device, [&](std::span<Device> devices) {
-          return measuring::measure_grids(*traced, grids, lit.mix, devices, parameters, told);
+          return measuring::measure_maintained(*traced, grids, lit.mix, devices, parameters, told);
         });
     measuring::Measurement measured = measuring::measurement_of(grids, readings);
     if (lit.overcast) {

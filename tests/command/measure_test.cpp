@@ -25,6 +25,12 @@ double ratio_of(const std::string& a, const std::string& b) {
          second["grids"][0]["statistics"]["Em"]["value"].get<double>();
 }
 
+/// 1000 cd downwards, level to the horizon: pi x 1000 lm.
+void write_spot(const FileFolder& folder, const std::string& name, const std::string& watts) {
+  folder.write(name + ".ies", "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0.1 0.1 0\n1 1 " +
+                                  watts + "\n0 45 90\n0\n1000 707.107 0\n");
+}
+
 }  // namespace
 
 TEST_CASE("measure writes the same values to all of its files") {
@@ -163,6 +169,35 @@ TEST_CASE("the maintenance factor and --light scale what is measured") {
   CHECK(run("--threads 1") == plain);
 }
 
+TEST_CASE("a luminaire's own maintenance factor takes the place of the measurement's") {
+  const FileFolder folder;
+  const std::string scene = write_box(folder);
+  write_spot(folder, "spot", "30");
+  const auto run = [&](const std::string& first, const std::string& second) {
+    // Mirror images in a box that is one of itself.
+    const std::string lamp =
+        R"("file": "spot.ies", "circuit": "all", "kelvin": 2700, "position": )";
+    folder.write("lamps.json", "[{" + lamp + "[-0.4, 0.9, 0]" + first + "}, {" + lamp +
+                                   "[0.4, 0.9, 0]" + second + "}]");
+    succeed(typed("measure", scene,
+                  "--photons 20k --rays 1024 --repeats 3 --quiet --light left=off",
+                  "--light right=off --plane floor+0.5 --maintenance 0.8 --luminaires",
+                  folder / "lamps.json", "-o", folder / "a.json", "-o", folder / "a.html"));
+    return folder.read("a.json");
+  };
+  const std::string plain = run("", ""), own = R"(, "maintenance": 0.4)";
+  CHECK(ratio_of(run(own, own), plain) == Approx(0.5).epsilon(0.02));  // other photons
+  CHECK(ratio_of(run(own, ""), plain) == Approx(0.75).epsilon(0.02));
+  const auto files = folder.json("a.json")["photometry"];
+  REQUIRE(files.size() == 2);
+  CHECK(files[0]["maintenance_factor"] == 0.4);
+  CHECK(files[1]["kelvin"] == 2700);
+  CHECK(files[0]["lumens"] == files[1]["lumens"]);  // those of new lamps
+  CHECK(files[0]["watts"].get<double>() == Approx(30));
+  CHECK_THAT(folder.read("a.html"), Contains("<dt>colour temperature</dt><dd>2700 K</dd>") &&
+                                        Contains("<th>maintenance factor</th>"));
+}
+
 TEST_CASE("a target is judged in the table, the JSON and the report") {
   const FileFolder folder;
   folder.write("desk.json", R"({"origin": [0, -0.2, 0.5], "u": [0.5, 0, 0], "v": [0, 0, -0.5],
@@ -274,15 +309,11 @@ TEST_CASE("a report describes the luminaires, their energy and the room, in two 
 TEST_CASE("a list of parts totals the power where every file states it") {
   const FileFolder folder;
   const std::string scene = write_box(folder);
-  const auto write_spot = [&](const std::string& name, const std::string& watts) {
-    folder.write(name + ".ies", "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0.1 0.1 0\n1 1 " +
-                                    watts + "\n0 45 90\n0\n1000 707.107 0\n");
-  };
-  write_spot("a", "30");
+  write_spot(folder, "a", "30");
   folder.write("lamps.json", R"([{"name": "a", "file": "a.ies", "position": [0, 0.9, 0]},
       {"name": "b", "file": "b.ies", "position": [0.3, 0.9, 0]}])");
   const auto total = [&](const std::string& watts) {
-    write_spot("b", watts);
+    write_spot(folder, "b", watts);
     succeed(measure(scene, "--plane floor+0.75 --luminaires", folder / "lamps.json", "-o",
                     folder / "a.html"));
     const std::string page = folder.read("a.html");

@@ -114,7 +114,7 @@ TEST_CASE("entries of one circuit share a layer, and a colour temperature tints 
   const Scene scene = scene_with(
       folder, R"([{"file": "lamp.ies", "position": [0, 0, 2], "size": [1, 1], "circuit": "C1"},
                   {"file": "lamp.ies", "position": [2, 0, 2], "size": [1, 1], "circuit": "C1",
-                   "name": "warm", "kelvin": 2700}])");
+                   "name": "warm", "kelvin": 2700, "maintenance": 0.7}])");
   const LightGroups layers = light_groups_of(scene);
   REQUIRE(layers.groups.size() == 1);
   CHECK(layers.groups[0].name == "C1");
@@ -122,6 +122,10 @@ TEST_CASE("entries of one circuit share a layer, and a colour temperature tints 
   const glm::vec3 warm = scene.lights[1].color;
   CHECK(luminance(glm::dvec3(warm)) == Approx(1));
   CHECK((warm.r > warm.g && warm.g > warm.b));
+  REQUIRE(scene.distributions.size() == 2);
+  CHECK(scene.distributions[0].data().maintenance == 0);
+  CHECK(scene.distributions[1].data().kelvin == 2700);
+  CHECK(scene.distributions[1].data().maintenance == 0.7);
 }
 
 TEST_CASE("however many entries name a file, its intensities are there once") {

@@ -283,6 +283,14 @@ def test_melanopic_light_is_that_of_the_luminaires_colours(record):
     record["photometry"][0]["data"].append(["colour temperature", "4103 K"])
     row, = melanopic.melanopic_table(record)["rows"]
     assert row[1:] == ["300", "0.63", "190", "63", "33%", "33%"]
+    warm = {**record["photometry"][0], "data": [["colour temperature", "2998 K"]], "kelvin": 2998}
+    record["luminaires"][0]["kelvin"], stated = 2998, {**record, "photometry": [*record["photometry"], warm]}
+    assert melanopic.melanopic_table(stated)["rows"][0][2] == "0.46"
+    warm["maintenance_factor"] = record["luminaires"][0]["maintenance_factor"] = 0.85
+    parts = Report(stated)._lists()[1]
+    assert parts["columns"][3] == "maintenance factor" and [row[3] for row in parts["rows"]] == ["0.85", "", ""]
+    assert parts["rows"][0][2] == ["a.ies", "2998 K"]
+    del record["luminaires"][0]["kelvin"], record["luminaires"][0]["maintenance_factor"]
     record["luminaires"].append({"name": "sky", "position": None, "file": "", "lumens": 1})
     assert melanopic.melanopic_table(record) is None
     record["lights"] = [{"name": "sky"}, {"name": "all lamps"}]

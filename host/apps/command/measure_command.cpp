@@ -165,7 +165,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   parameters.by_paths = render.integrator == Integrator::path;
   if (options.cylindrical) parameters.gathering.response = SensorResponse::cylindrical;
   const measuring::Readings readings =
-      measuring::measure_grids(scene, grids, mix, devices, parameters, progress);
+      measuring::measure_maintained(scene, grids, mix, devices, parameters, progress);
   if (!leads()) return;
   measuring::Measurement measurement = measuring::measurement_of(grids, readings);
   if (options.daylight_factor) {

@@ -181,7 +181,7 @@ void add_maintenance_option(const OptionGroup& group, MeasuringParameters& param
   group
       .call("--maintenance", take, "X|PARTS",
             "maintenance factor of all values, above 0 up to 1, or its parts by CIE 97, such as "
-            "LLMF=0.9,LSF=1,LMF=0.95,RSMF=0.94")
+            "LLMF=0.9,LSF=1,LMF=0.95,RSMF=0.94; luminaires of a list may have their own")
       ->default_str("1");
 }
 

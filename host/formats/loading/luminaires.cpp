@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -38,9 +39,10 @@ using nlohmann::json;
 constexpr double below_ceiling = 0.005;  // metres
 /// The least fraction of a lamp's flux that counts as light to the other side of its opening.
 constexpr double least_uplight = 1e-3;
+constexpr double least_maintenance = 0.01;
 constexpr int most_in_a_row = 1'000;
 
-/// A photometric file, which a scene holds once however many entries name it.
+/// A photometric file with what entries state in place of it, once in a scene.
 struct LampKind {
   std::uint32_t distribution = 0;  ///< of the scene
   bool uplight = false;            ///< whether it shines to the other side of its opening, too
@@ -48,7 +50,8 @@ struct LampKind {
 
 /// Data that entries share, found once: a file of kilobytes may have thousands of entries.
 struct Shared {
-  std::map<std::string, LampKind> kinds = {};
+  std::map<std::string, IntensityDistribution> files = {};
+  std::map<std::tuple<std::string, double, double>, LampKind> kinds = {};
   std::optional<std::optional<glm::dvec3>> ceiling = {};  ///< its middle, once it was looked for
 };
 
@@ -88,18 +91,29 @@ double uplight_of(const IntensityDistribution& distribution) {
   return all > 0 ? up / all : 0.0;
 }
 
-LampKind kind_of(const std::string& file, const JsonObject& object, files::SceneFolder& folder,
-                 Shared& shared, Scene& scene, files::Warnings& warnings) {
-  if (const auto found = shared.kinds.find(file); found != shared.kinds.end()) {
+LampKind kind_of(const std::string& file, double kelvin, const JsonObject& object,
+                 files::SceneFolder& folder, Shared& shared, Scene& scene,
+                 files::Warnings& warnings) {
+  const double maintenance =
+      object.has("maintenance") ? object.number("maintenance", least_maintenance, 1) : 0;
+  const std::tuple key(file, kelvin, maintenance);
+  if (const auto found = shared.kinds.find(key); found != shared.kinds.end()) {
     return found->second;
   }
   try {
-    const auto bytes = folder.read(file, limits::max_photometry_bytes);
-    auto lamp = photometry::read_photometry(file, bytes, warnings);
+    auto lamp = shared.files.find(file);
+    if (lamp == shared.files.end()) {
+      const auto bytes = folder.read(file, limits::max_photometry_bytes);
+      lamp = shared.files.emplace(file, photometry::read_photometry(file, bytes, warnings)).first;
+    }
     const LampKind kind{static_cast<std::uint32_t>(scene.distributions.size()),
-                        uplight_of(lamp) > least_uplight};
-    scene.distributions.push_back(std::move(lamp));
-    return shared.kinds[file] = kind;
+                        uplight_of(lamp->second) > least_uplight};
+    LuminaireData data = lamp->second.data();
+    if (kelvin > 0) data.kelvin = kelvin, data.highest_kelvin = 0;
+    data.maintenance = maintenance;
+    scene.distributions.push_back(lamp->second);
+    scene.distributions.back().set_data(std::move(data));
+    return shared.kinds[key] = kind;
   } catch (const files::ResourceError& error) {
     object.refuse(fmt::format("'file': {}", error.what()));
   }
@@ -157,9 +171,14 @@ std::optional<glm::dvec2> size_of(const LuminousOpening& opening) {
 LuminaireArray array_of(const json& entry, const JsonObject& object, files::SceneFolder& folder,
                         Shared& shared, Scene& scene, files::Warnings& warnings) {
   const std::string file = object.text("file", "");
-  LuminaireArray lamps{{}, kind_of(file, object, folder, shared, scene, warnings)};
+  double kelvin = 0;
+  if (object.has("kelvin")) {
+    kelvin = object.number("kelvin", limits::min_color_temperature, limits::max_color_temperature);
+  }
+  LuminaireArray lamps{{}, kind_of(file, kelvin, object, folder, shared, scene, warnings)};
   const IntensityDistribution& distribution = scene.distributions[lamps.kind.distribution];
   PlacedLuminaires& placed = lamps.placed;
+  placed.kelvin = kelvin;
   placed.name = object.text("name", std::filesystem::path(file).stem().string());
   placed.position = position_of(entry, object, scene, shared);
   glm::dvec3 aim(0.0, -1.0, 0.0);
@@ -169,10 +188,6 @@ LuminaireArray array_of(const json& entry, const JsonObject& object, files::Scen
   placed.axes = luminaire_axes(glm::normalize(aim), placed.rotation);
   placed.lumens = distribution.flux();
   if (object.has("lumens")) placed.lumens = object.number("lumens", 0, limits::max_light_power);
-  if (object.has("kelvin")) {
-    placed.kelvin =
-        object.number("kelvin", limits::min_color_temperature, limits::max_color_temperature);
-  }
   if (object.has("circuit")) placed.circuit = object.text("circuit", "");
   if (const auto count = pair_of(entry, object, "count", 1, most_in_a_row)) {
     placed.columns = static_cast<int>((*count)[0]);
@@ -293,7 +308,7 @@ std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
     const json entry = list.entries[i];
     const JsonObject object(entry, fmt::format("{}: luminaire {}", file.string(), i + 1),
                             {"name", "file", "position", "aim", "rotation", "lumens", "kelvin",
-                             "circuit", "count", "spacing", "size"});
+                             "maintenance", "circuit", "count", "spacing", "size"});
     arrays.push_back(array_of(entry, object, folder, shared, scene, warnings));
     const PlacedLuminaires& placed = arrays.back().placed;
     lamps += static_cast<std::size_t>(placed.columns) * static_cast<std::size_t>(placed.rows);

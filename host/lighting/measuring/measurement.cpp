@@ -299,6 +299,27 @@ Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, co
   return readings;
 }
 
+Readings measure_maintained(const Scene& scene, std::span<const SensorGrid> grids,
+                            const LightMix& mix, std::span<Device> devices,
+                            const MeasuringParameters& parameters, Progress& progress) {
+  const bool any = std::ranges::any_of(
+      scene.distributions, [](const auto& lamp) { return lamp.data().maintenance > 0; });
+  if (!any) return measure_grids(scene, grids, mix, devices, parameters, progress);
+  Scene aged = scene;
+  LightMix aged_mix = mix;
+  const LightGroups groups = light_groups_of(scene);
+  std::vector<double> left(mix.lights.size());  // of the power of each group
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    const std::uint32_t file = scene.lights[i].distribution;
+    const double own = file == none ? 0 : scene.distributions[file].data().maintenance;
+    const double factor = own > 0 ? own / parameters.maintenance : 1;
+    aged.lights[i].power *= factor;
+    left[groups.group_of[i]] += factor * groups.fraction[i];
+  }
+  for (std::size_t i = 0; i < left.size(); ++i) aged_mix.lights[i].power *= left[i];
+  return measure_grids(aged, grids, aged_mix, devices, parameters, progress);
+}
+
 std::vector<Portal> portals_of_grids(const Scene& scene, std::span<const SensorGrid> grids,
                                      std::span<const std::string> asked) {
   constexpr double above = 0.01;  // metres: a sensor may lie on a surface
@@ -364,7 +385,7 @@ std::vector<LightIlluminance> measure_illuminance(const Scene& scene,
   const std::vector<measuring::SensorGrid> grids{
       {"points", {sensors.begin(), sensors.end()}, std::nullopt}};
   const measuring::Readings readings =
-      measuring::measure_grids(scene, grids, mix, devices, parameters, progress);
+      measuring::measure_maintained(scene, grids, mix, devices, parameters, progress);
   std::vector<LightIlluminance> result;
   for (std::size_t i = 0; i <= readings.lights().size(); ++i) {
     result.push_back({readings.name_of(i), measuring::means_of(readings.repeats_of(i))});

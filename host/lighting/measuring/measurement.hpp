@@ -119,6 +119,12 @@ Readings measure_grids(const Scene& scene, std::span<const SensorGrid> grids, co
                        std::span<Device> devices, const MeasuringParameters& parameters,
                        Progress& progress);
 
+/// measure_grids, with luminaires that have a maintenance factor of their own (LuminaireData) at
+/// that in place of the parameters'.
+Readings measure_maintained(const Scene& scene, std::span<const SensorGrid> grids,
+                            const LightMix& mix, std::span<Device> devices,
+                            const MeasuringParameters& parameters, Progress& progress);
+
 /// Scene::portals of the rooms of the grids, where light comes from beyond the scene.
 ///   asked   as SceneLoadOptions::portals
 /// Errors: those of portals_asked_for.

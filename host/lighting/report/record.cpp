@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ctime>
 #include <glm/gtc/constants.hpp>
+#include <tuple>
 
 #include "common/ascii_text.hpp"
 #include "photile/light_layers.hpp"
@@ -39,6 +40,12 @@ std::vector<double> lumens_of(const Scene& scene, const LightMix& mix) {
   return lumens;
 }
 
+/// Adds by what luminaires of one photometric file may differ.
+void add_stated(const LuminaireData& data, Json& entry) {
+  if (data.kelvin > 0) entry["kelvin"] = data.kelvin;
+  if (data.maintenance > 0) entry["maintenance_factor"] = data.maintenance;
+}
+
 /// Adds what a report says of the scene beside what was measured: luminaires with their numbers on
 /// plans, photometric files, reflectances of opaque materials that triangles have.
 void add_scene(const Scene& scene, const LightMix& mix, Json& record) {
@@ -54,6 +61,7 @@ void add_scene(const Scene& scene, const LightMix& mix, Json& record) {
                      {"file", measured ? scene.distributions[light.distribution].name() : ""},
                      {"position", place ? vector_json(position_in_world(scene, *place)) : Json()},
                      {"lumens", lumens[i]}});
+    if (measured) add_stated(scene.distributions[light.distribution].data(), lamps.back());
   }
   for (const Part& part : parts_of(scene, lumens)) {
     const auto planes = intensities_of(*part.lamp);
@@ -66,6 +74,7 @@ void add_scene(const Scene& scene, const LightMix& mix, Json& record) {
                      {"round", part.lamp->opening().shape != LuminousOpening::Shape::box},
                      {"data", data_rows(*part.lamp)},
                      {"intensities", {{"C0", planes[0]}, {"C90", planes[1]}}}});
+    add_stated(part.lamp->data(), files.back());
   }
   std::vector<bool> used(scene.materials.size(), false);
   for (const std::uint32_t material : scene.triangle_material) used[material] = true;
@@ -123,6 +132,7 @@ std::vector<std::pair<std::string, std::string>> data_rows(const IntensityDistri
                     tunable ? fmt::format(" to {:.0f}", data.highest_kelvin) : ""));
   }
   if (data.rendering > 0) add("colour rendering", fmt::format("Ra {:.0f}", data.rendering));
+  if (data.maintenance > 0) add("maintenance factor", fmt::format("{:g}", data.maintenance));
   return rows;
 }
 
@@ -143,8 +153,11 @@ std::vector<Part> parts_of(const Scene& scene, const std::vector<double>& lumens
     const std::uint32_t distribution = scene.lights[i].distribution;
     if (distribution == none) continue;
     const IntensityDistribution* const lamp = &scene.distributions[distribution];
+    const auto what = [](const IntensityDistribution& one) {
+      return std::tuple(one.name(), one.data().kelvin, one.data().maintenance);
+    };
     auto part = std::find_if(parts.begin(), parts.end(),
-                             [&](const Part& each) { return each.lamp->name() == lamp->name(); });
+                             [&](const Part& each) { return what(*each.lamp) == what(*lamp); });
     if (part == parts.end()) part = parts.insert(part, Part{lamp});
     ++part->count;
     part->lumens += lumens[i];

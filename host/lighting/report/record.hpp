@@ -26,7 +26,7 @@ std::vector<std::pair<std::string, std::string>> data_rows(const IntensityDistri
 /// angles are negative on the plane's other side.
 std::array<std::vector<double>, 2> intensities_of(const IntensityDistribution& lamp);
 
-/// Luminaires of one photometric file.
+/// Luminaires of one photometric file, with the same data.
 struct Part {
   const IntensityDistribution* lamp;
   std::size_t count = 0;

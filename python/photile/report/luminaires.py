@@ -31,6 +31,15 @@ def outline_of(corners: Floats, is_round: bool) -> Floats:
     return outline
 
 
+Kind = tuple[str, Any, Any]
+
+
+def kind_of(entry: dict[str, Any], name: str = "file") -> Kind:
+    """By what a luminaire and a photometric file, with `name`, of a record belong together: the file, and the colour
+    temperature and the maintenance factor that a list of luminaires states."""
+    return entry[name], entry.get("kelvin"), entry.get("maintenance_factor")
+
+
 @dataclasses.dataclass
 class Type:
     """Luminaires of one photometric file, or of one name but for the number at its end.
@@ -38,6 +47,8 @@ class Type:
     lumens   of all together, as planned
     watts    the same; 0 = not known
     round    whether its luminous opening is
+    colour   "3000 K", where others of the same file have another colour
+    maintenance   its own factor; 0 = that of the measurement
     """
 
     tag: str
@@ -46,12 +57,15 @@ class Type:
     lumens: float = 0.0
     watts: float = 0.0
     round: bool = False
+    colour: str = ""
+    maintenance: float = 0.0
     data: dict[str, str] = dataclasses.field(default_factory=dict)
 
     def lines(self) -> list[str]:
         """What identifies it: maker and article, then its name."""
         made = " ".join(filter(None, (self.data.get("maker"), self.data.get("article"))))
-        return list(dict.fromkeys(filter(None, (made, self.data.get("luminaire") or self.name))))
+        return list(dict.fromkeys(filter(None, (made, self.data.get("luminaire") or self.name,
+                                                  self.colour))))
 
 
 class Luminaires:
@@ -59,21 +73,25 @@ class Luminaires:
     first, in the order of the luminaires.
 
     of_number   the type of a luminaire, by the number that the record and plans give it
+    of_kind     the type of a photometric file
     parts       the types of the list of parts: those with files where there are some
     """
 
     def __init__(self, record: dict[str, Any]) -> None:
         self.rows = [lamp for lamp in record.get("luminaires", []) if lamp["position"]]
-        sheets = {part["name"]: part for part in record.get("photometry", [])}
+        sheets = {kind_of(part, "name"): part for part in record.get("photometry", [])}
         self.types: list[Type] = []
-        of_file = {name: self._add(name, sheets[name]) for name in
-                   dict.fromkeys([lamp["file"] for lamp in self.rows if lamp["file"] in sheets] + list(sheets))}
+        kinds = dict.fromkeys([kind for kind in map(kind_of, self.rows) if kind in sheets] + list(sheets))
+        self.of_kind = {kind: self._add(kind[0], sheets[kind]) for kind in kinds}
+        for kind, one in self.of_kind.items():
+            if len({other for name, other, _ in kinds if name == kind[0]}) > 1 and kind[1]:
+                one.colour = f"{kind[1]:.0f} K"
         self.parts = list(self.types)
         self.of_number: dict[int, Type] = {}
         others: dict[str, Type] = {}
         for lamp in self.rows:
-            if lamp["file"] in sheets:
-                self.of_number[int(lamp["number"])] = of_file[lamp["file"]]
+            if kind_of(lamp) in sheets:
+                self.of_number[int(lamp["number"])] = self.of_kind[kind_of(lamp)]
                 continue
             name = _number_at_end.sub("", lamp["name"]) or lamp["name"]
             if name not in others:
@@ -89,6 +107,7 @@ class Luminaires:
         if part:
             added.pieces, added.lumens, added.watts = int(part["pieces"]), part["lumens"], part["watts"]
             added.round, added.data = bool(part.get("round")), dict(part["data"])
+            added.maintenance = part.get("maintenance_factor") or 0.0
         self.types.append(added)
         return added
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from .luminaires import kind_of
 from .tables import Table, table
 
 # The illuminants LED-B1 to LED-B5 of CIE 15:2018, blue LEDs with phosphors: correlated colour temperature, and
@@ -44,12 +45,12 @@ def _ratio_of_all(ratios: set[float | None]) -> float | None:
 
 def _ratios_of(record: dict[str, Any]) -> tuple[float | None, dict[str, float | None]]:
     """The ratio of all lights together, and those of lights that are measured apart, by their names."""
-    of_file = {part["name"]: _ratio_of_file(part) for part in record.get("photometry", [])}
+    of_kind = {kind_of(part, "name"): _ratio_of_file(part) for part in record.get("photometry", [])}
     of_name: dict[str, set[float | None]] = {}
     for lamp in record.get("luminaires", []):
         outside = not lamp["position"]  # skies and suns
         if lamp["lumens"] > 0 or outside:
-            of_name.setdefault(lamp["name"], set()).add(_daylight if outside else of_file.get(lamp["file"]))
+            of_name.setdefault(lamp["name"], set()).add(_daylight if outside else of_kind.get(kind_of(lamp)))
     names = [light["name"] for light in record.get("lights", [])]
     others = {one for name, ratios in of_name.items() if name not in names for one in ratios}
     apart = {name: _ratio_of_all(of_name.get(name, others)) for name in names}
@@ -102,6 +103,7 @@ def melanopic_table(record: dict[str, Any]) -> Table | None:
                   *(f"{least} lux or more" for least in _thresholds)], rows, words=(0,), kind="figures",
                  remark="An approximation: the spectra of luminaires are those that typical LEDs of their "
                         "colour temperature have (LED-B1 to LED-B5 of CIE 15:2018); others of the same colour "
-                        "have up to 35% more. Colours are those of photometric files; light from outside counts "
+                        "have up to 35% more. Colours are those that photometric files or lists of luminaires "
+                        "state; light from outside counts "
                         "as D65. WELL v2 (L03) asks for 136 lux (1 point) or 250 lux (3 points) vertically at "
                         "the eyes.")

@@ -16,7 +16,7 @@ import numpy as np
 
 from . import glossary, texts
 from .included import Included, Map, factor_table
-from .luminaires import Luminaires
+from .luminaires import Luminaires, kind_of
 from .melanopic import melanopic_table
 from .plans import Curve, Plan, sheets
 from .rooms import Building, Room, RoomResults
@@ -359,6 +359,9 @@ class Report:
             rows.append(self._row("", sum(part.pieces for part in parts), [self._words("together")],
                                   sum(part.lumens for part in parts),
                                   sum(part.watts for part in parts) if all_known else 0))
+        own = any(part.maintenance for part in parts)
+        for row, factor in zip(rows, [*(part.maintenance for part in parts), 0] if own else ()):
+            row.insert(3, f"{factor:g}" if factor else "")
         rooms = self._building.rooms
         room_of = {int(lamp["number"]): one.room.name for one in rooms for lamp in one.lamps}
         lamps = [[self._luminaires.tag(int(lamp["number"])), lamp["name"], lamp["kind"],
@@ -370,8 +373,9 @@ class Report:
             table("Luminaires", ["number", "name", "kind", *(["room"] if rooms else []), "position (x, y, z), m",
                                  "luminous flux"], lamps, words=(2,), names=(0, 1, 3) if rooms else (0, 1),
                   plan="" if rooms else self._plan_of_luminaires()),
-            table("List of parts", ["type", "pieces", "luminaire", "lumens each", "watts each", "luminous flux",
-                                    "power", "luminous efficacy"], rows, names=(0, 2), kind="parts"),
+            table("List of parts", ["type", "pieces", "luminaire", *(["maintenance factor"] if own else []),
+                                    "lumens each", "watts each", "luminous flux", "power", "luminous efficacy"],
+                  rows, names=(0, 2), kind="parts"),
             table("Reflectances", ["material", "reflectance"], surfaces, names=(0,))]
 
     @staticmethod
@@ -388,15 +392,15 @@ class Report:
 
     def _sheets(self) -> list[dict[str, Any]]:
         sheets = []
-        own = ("power", "colour temperature", "colour rendering")  # the others are texts of the maker
-        tags = {part.name: part.tag for part in self._luminaires.types}
+        own = ("power", "colour temperature", "colour rendering", "maintenance factor")  # others: the maker's texts
         for part in self._record.get("photometry", []):
             bright = any(value and value > 0 for plane in part["intensities"].values() for value in plane)
             drawing = self._rendered("curve.svg", curve=Curve(part["intensities"])) if bright else ""
             rows = [("luminous flux", self._words.figure(f"{texts.grouped(part['flux'], 4)} lm"))]
             rows += [(name, self._words.figure(self._words(value)) if name in own else value)
                      for name, value in part["data"]]
-            sheets.append({"heading": f"{tags[part['name']]}: {part['name']}",
+            tag = self._luminaires.of_kind[kind_of(part, "name")].tag
+            sheets.append({"heading": f"{tag}: {part['name']}",
                            "drawing": markupsafe.Markup(drawing), "rows": rows})
         return sheets
 
