@@ -56,6 +56,7 @@ TEST_CASE("a year of daylight fills its files") {
   REQUIRE(grid["sensors"].size() == points);
   CHECK(grid["mean_lux"].get<double>() > 10);
   CHECK(grid["lamps"].size() == 2);
+  CHECK(grid["EN 17037"]["median_outdoor_lux"] > 0);
   // The table has the figures of the JSON, rounded.
   std::istringstream table(folder.read("a.CSV"));  // capitals are as good
   std::string line;

@@ -54,6 +54,7 @@ TEST_CASE("3,650 hours are those from 8 to 18, and 4,380 those of daylight") {
   CHECK(daylight[6]);
   CHECK(!daylight[5]);
   CHECK(!daylight[18]);
+  CHECK(median_outdoors(hours) == 1012);  // six of the twelve hours have as much
 }
 
 TEST_CASE("autonomy, useful daylight, sun and median of a point are counted by the hour") {

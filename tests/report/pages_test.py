@@ -273,6 +273,11 @@ def test_daylight_factors_have_levels_by_the_light_outdoors(record):
     assert row == ["desks", "3.00%", "3.00%", "1.00%", "10,000", "30,000", "50,000"]
     record["report"]["outdoor_lux"] = 10000  # targets of 3% and 1%, 5% and 3%, 7.5% and 5%
     assert Report(record)._results()[0]["rows"][0][4:] == ["75% / 100%", "25% / 75%", "0% / 25%", "minimum"]
+    del record["report"]["outdoor_lux"]
+    year = json.loads((pathlib.Path(__file__).parent / "results" / "daylight.json").read_text())
+    year[0]["EN 17037"]["median_outdoor_lux"] = 10000
+    record["report"]["included"].append({"file": "", "content": year})
+    assert Report(record)._results()[0]["rows"][0][-1] == "minimum"
     assert "<h1>Daylight factors: room" in page_of({**record, **FACTORS})
 
 

@@ -141,6 +141,12 @@ std::vector<bool> daylight_hours(const std::vector<SkyHour>& hours) {
   return daylight;
 }
 
+double median_outdoors(const std::vector<SkyHour>& hours) {
+  std::vector<double> lux;
+  for (const SkyHour& hour : hours) lux.push_back(hour.diffuse_lux);
+  return reached_by(std::move(lux), half * half);  // the daylight hours are half of all
+}
+
 PointDaylight point_daylight(std::span<const float> lux, std::span<const float> sun,
                              const std::vector<bool>& occupied, const std::vector<bool>& daylight,
                              double target_lux) {

@@ -32,6 +32,9 @@ std::vector<bool> occupied_hours(const std::vector<SkyHour>& hours, const Occupa
 /// The half of all hours with the most diffuse light, the daylight hours of EN 17037: 4,380.
 std::vector<bool> daylight_hours(const std::vector<SkyHour>& hours);
 
+/// Diffuse lux outdoors that half of the daylight hours reach: EN 17037 has it for capitals.
+double median_outdoors(const std::vector<SkyHour>& hours);
+
 /// The daylight of one sensor. Fractions are of the occupied hours.
 struct PointDaylight {
   double mean_lux = 0;             ///< over the whole year

@@ -142,6 +142,7 @@ DaylightResults daylight_results(const DaylightAsked& asked, const Year& year,
                                  const SkyRounds& rounds, const YearLamps& lamps) {
   DaylightResults results;
   results.rounds = rounds.count();
+  results.outdoor_lux = median_outdoors(year.hours);
   std::vector<SkyState> states = rounds.mean();
   light_hours(year, states);
   const SkyState& open = states.front();

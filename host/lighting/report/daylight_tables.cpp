@@ -232,6 +232,7 @@ Json daylight_json(const DaylightResults& results, const DaylightAsked& asked) {
   const std::vector<bool> closed = closed_hours(results);
   for (std::size_t g = 0; g < results.grids.size(); ++g) {
     Json entry = grid_json(results.grids[g], asked);
+    entry["EN 17037"]["median_outdoor_lux"] = results.outdoor_lux;
     if (!results.states.empty()) {
       Json& blinds = entry["blinds"];
       blinds["closed_hours"] = std::count(closed.begin(), closed.end(), true);

@@ -35,6 +35,7 @@ struct DaylightState {
 
 struct DaylightResults {
   std::size_t rounds = 1;           ///< that the figures are means of
+  double outdoor_lux = 0;           ///< as median_outdoors
   std::vector<GridDaylight> grids;  ///< with blinds, where there are some, as they close
   // Without blinds empty.
   std::vector<DaylightState> states;

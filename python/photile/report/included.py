@@ -135,6 +135,14 @@ def factor_table(grids: list[dict[str, Any]], outdoors: float | None) -> Table:
                         "of it the second; the parts of the plane that have them are stated.")
 
 
+def outdoors_of(contents: Iterable[Any]) -> float | None:
+    """The median diffuse illuminance outdoors of the first year among results, lux; None without one."""
+    years = (content[0] for content in contents if isinstance(content, list) and content)
+    rated = (year.get("EN 17037") for year in years if isinstance(year, dict))
+    known = (one.get("median_outdoor_lux") for one in rated if isinstance(one, dict))
+    return next((float(lux) for lux in known if isinstance(lux, (int, float)) and lux > 0), None)
+
+
 class Map:
     """A figure at points on a plane, by the cells in which they lie; the highest of several in one
     cell.

@@ -15,7 +15,7 @@ import markupsafe
 import numpy as np
 
 from . import glossary, texts
-from .included import Included, Map, factor_table
+from .included import Included, Map, factor_table, outdoors_of
 from .luminaires import Luminaires, kind_of
 from .melanopic import melanopic_table
 from .plans import Curve, Plan, sheets
@@ -94,7 +94,7 @@ class Report:
             "number": lambda value, digits: self._words.figure(texts.number(value, digits))}
         self._environment.globals |= {"_": self._words, "embedded": self._embedded}
         self._luminaires = Luminaires(record)
-        outdoors = self._about.get("outdoor_lux")
+        outdoors = self._about.get("outdoor_lux") or outdoors_of(each["content"] for each in self._about["included"])
         self._included = Included(outdoors)
         for each in self._about["included"]:
             try:
