@@ -220,11 +220,14 @@ TEST_CASE("daylight factors are per cent of the sky's lux") {
   const FileFolder folder;
   const std::string scene = write_open_box(folder);
   const auto run = [&](const char* more) {
-    succeed(quick("measure", scene, "--quiet", more, "-o", folder / "df.json"));
+    succeed(quick("measure", scene, "--quiet", more, "-o", folder / "df.json", "-o",
+                  folder / "df.html"));
     return folder.json("df.json");
   };
   const auto factors = run("--daylight-factor");
   CHECK(factors["unit"] == "DF %");
+  CHECK_THAT(folder.read("df.html"),
+             Contains("<h1>Daylight factors: open.obj") && Contains("D<sub>m</sub> %"));
   const auto lux = run("--sky overcast=5000");
   const auto& lights = lux["grids"][0]["lights"];
   const double sky = lights["sky"]["Em"]["value"], ground = lights["ground"]["Em"]["value"];

@@ -217,8 +217,7 @@ void add_measuring(CLI::App& command, MeasureOptions& options) {
   measuring.flag("--cylindrical", options.cylindrical,
                  "cylindrical illuminance around the direction of each point, which must point up");
   measuring.flag("--daylight-factor", options.daylight_factor,
-                 "per cent of the illuminance on open ground under the CIE overcast sky; .csv, "
-                 ".json, .svg, .dxf");
+                 "per cent of the illuminance on open ground under the CIE overcast sky");
   measuring.add("--target", options.target, "NAME|VALUES",
                 "requirements of grids whose file names none, by name (office-desk: EN 12464-1; "
                 "escape-route: EN 1838, by direct light alone) or values (Em=500,Uo=0.6)");

@@ -72,9 +72,6 @@ MeasureOutputs::MeasureOutputs(MeasureOutputOptions& options)
       colours_(options.false_colour.of(unit_)) {
   if (options.daylight_factor) colours_.scale = 0;  // a scale for lux would show nothing
   const bool reports = has_any(options.outputs, {".html", ".pdf"});
-  if (options.daylight_factor && reports) {
-    throw UsageError("reports are in lux; write daylight factors to .csv, .json, .svg or .dxf");
-  }
   const auto only_in_reports = [&](const char* option, bool given) {
     if (!given || reports) return;
     throw UsageError(

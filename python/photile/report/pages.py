@@ -351,7 +351,10 @@ class Report:
 
     def _lists(self) -> list[Table]:
         """Luminaires, parts with totals, reflectances."""
-        record, parts = self._record, self._luminaires.parts
+        record = self._record
+        parts, all_lamps = self._luminaires.parts, self._luminaires.rows
+        if self._factors:  # of the sky's light, without lamps
+            parts, all_lamps = [], []
         rows = [self._row(part.tag, part.pieces, part.lines(), part.lumens, part.watts, part.pieces)
                 for part in parts]
         if len(parts) > 1:
@@ -366,7 +369,7 @@ class Report:
         room_of = {int(lamp["number"]): one.room.name for one in rooms for lamp in one.lamps}
         lamps = [[self._luminaires.tag(int(lamp["number"])), lamp["name"], lamp["kind"],
                   *([room_of.get(int(lamp["number"]), "")] if rooms else []), texts.place(lamp["position"]),
-                  f"{texts.grouped(lamp['lumens'], 4)} lm"] for lamp in self._luminaires.rows]
+                  f"{texts.grouped(lamp['lumens'], 4)} lm"] for lamp in all_lamps]
         surfaces = [[each["material"], f"{100 * each['reflectance']:.0f}%"]
                     for each in record.get("reflectances", [])]
         return [
@@ -393,7 +396,7 @@ class Report:
     def _sheets(self) -> list[dict[str, Any]]:
         sheets = []
         own = ("power", "colour temperature", "colour rendering", "maintenance factor")  # others: the maker's texts
-        for part in self._record.get("photometry", []):
+        for part in [] if self._factors else self._record.get("photometry", []):
             bright = any(value and value > 0 for plane in part["intensities"].values() for value in plane)
             drawing = self._rendered("curve.svg", curve=Curve(part["intensities"])) if bright else ""
             rows = [("luminous flux", self._words.figure(f"{texts.grouped(part['flux'], 4)} lm"))]
