@@ -45,7 +45,7 @@ _most_lights = 8  # that tables of all rooms show apart; more are one group in t
 class Conversion:
     """What was done."""
 
-    commands: list[list[str]]  # words of those that measure all rooms, and that rate their glare
+    commands: list[list[str]]  # words of those that measure all rooms, and that rate the glare of the sky
     summary: list[str]  # lines about what was written
     warnings: list[str]  # lines about what was left out
 
@@ -283,13 +283,14 @@ def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[st
     if building.north:
         light += ["--set", f"north={building.north:g}"]
     groups = ["--light-group", "*=luminaires"] if len(luminaires) > _most_lights else []
-    commands = [["photile", "measure", str(scene), *places, *light, *groups, *report, "-o",
+    views = [f"--observers={beside(f'.observers/{room.file}.pts', room.observers().encode())}"
+             for room in chosen if observers]
+    ugr = views if luminaires else []
+    commands = [["photile", "measure", str(scene), *places, *ugr, *light, *groups, *report, "-o",
                  str(scene.with_suffix(".html"))]]
-    if observers and chosen:
-        views = [f"--observers={beside(f'.observers/{room.file}.pts', room.observers().encode())}"
-                 for room in chosen]
-        commands.append(["photile", "glare", str(scene), *views, "--ratings",
-                         "ugr" if luminaires else "dgp", *light, "-o", str(scene.with_suffix(".glare.json"))])
+    if views and not luminaires:
+        commands.append(["photile", "glare", str(scene), *views, "--ratings", "dgp", *light, "-o",
+                         str(scene.with_suffix(".glare.json"))])
     inputs = {path.resolve() for path in (*files, *(file for _, file in ies))}
     for path in outputs:
         if path.resolve() in inputs:
@@ -332,8 +333,7 @@ def main() -> int:
                         help="target of rooms by number or name, such as Office*=office-desk; repeatable, the last "
                              "that fits counts")
     parser.add_argument("--observers", action="store_true",
-                        help="write four observers of each room, too, and print the command that rates "
-                             "their glare")
+                        help="write four observers of each room, too, whose glare the printed command rates")
     options = parser.parse_args()
 
     def work() -> None:

@@ -160,7 +160,7 @@ def write(ifc: Path, rooms: Path, results: Path, output: Path,
     output : path
         ``.ifc`` to write; not one of the inputs.
     glare : path, optional
-        ``.json`` of ``photile glare`` with the observers of ``from_ifc``.
+        ``.json`` of ``photile glare`` with the observers of ``from_ifc``; by default those of the results.
 
     Returns
     -------
@@ -175,7 +175,7 @@ def write(ifc: Path, rooms: Path, results: Path, output: Path,
         raise UsageError(f"{output}: this file is read; name another one to write")
     listed, record = _read(rooms), _read(results)
     try:
-        observers = _read(glare)["observers"] if glare else []
+        observers = _read(glare)["observers"] if glare else record.get("glare", {}).get("observers", [])
         found = {room["global_id"]: (room["name"], one) for room in listed
                  if (one := _found(room, record, observers)) is not None}
         title = f"photile {record['photile']}, {record['date']}"
@@ -217,7 +217,8 @@ def main() -> int:
     parser.add_argument("--results", type=Path, required=True, metavar="FILE.json",
                         help="what photile measure -o FILE.json wrote with the grids of photile.from_ifc")
     parser.add_argument("--glare", type=Path, metavar="FILE.json",
-                        help="what photile glare -o FILE.json wrote with the observers of photile.from_ifc")
+                        help="what photile glare -o FILE.json wrote with the observers of photile.from_ifc, if the "
+                             "results have none")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE.ifc",
                         help="file to write")
     options = parser.parse_args()

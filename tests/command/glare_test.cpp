@@ -69,6 +69,16 @@ TEST_CASE("a grid has four directions of view at each point, and no pictures") {
   CHECK(views % 4 == 0);
   CHECK_FALSE(record["observers"][0].contains("picture"));
   CHECK_THAT(outcome.output, Contains("highest UGR") && !Contains("DGP"));
+  // The same people beside lux, and what is required of them.
+  const Outcome both = succeed(
+      typed("measure", folder / "box.obj", "--photons 20k --rays 64 --repeats 2 --quiet",
+            "--plane floor+0.75 --ugr-at floor+1.2 --spacing 0.5 --wall-band 0.2",
+            "--maintenance 0.5 --target UGR=10 -o", folder / "b.json", "-o", folder / "b.html"));
+  const auto measured = folder.json("b.json");
+  CHECK(measured["glare"]["observers"] == record["observers"]);
+  CHECK(measured["targets"][0]["judgements"][0]["figure"] == "UGR");
+  CHECK_THAT(both.output, Contains("working plane, point ") && Contains("at most 10: NOT MET"));
+  CHECK_THAT(folder.read("b.html"), Contains(">Glare (the worst") && Contains("the highest UGR"));
 }
 
 TEST_CASE("render projects as it is told, black beyond the circle of a fisheye") {

@@ -38,11 +38,10 @@ using Json = nlohmann::ordered_json;
 struct GlareOptions {
   RenderOptions render;
   glare::GlareParameters parameters;
-  std::vector<std::string> outputs;    ///< .csv, .json
-  std::vector<std::string> observers;  ///< files
-  std::vector<std::string> cameras;    ///< names or indices
+  std::vector<std::string> outputs;  ///< .csv, .json
+  ObserverOptions observers;
+  std::vector<std::string> cameras;  ///< names or indices
   PlaneOptions plane;
-  int directions = defaults::glare_directions;
   std::vector<std::string> ratings;  ///< empty = all of observers, UGR alone of a grid
   std::string pictures;              ///< folder, "" = none
   std::string target;                ///< "" = none
@@ -52,14 +51,8 @@ struct GlareOptions {
 std::vector<glare::Observer> observers_of(const GlareOptions& options, const Scene& scene,
                                           std::optional<measuring::PlaneLayout>& plane,
                                           Progress& progress) {
-  const auto axes = trace::PlanAxes::in_world(scene);
-  std::vector<glare::Observer> all;
-  const auto add = [&](const std::vector<glare::Observer>& more) {
-    all.insert(all.end(), more.begin(), more.end());
-  };
-  for (const auto& file : options.observers) {
-    add(glare::observers_at(measuring::read_points(file), axes));
-  }
+  std::vector<glare::Observer> all =
+      observers_at(options.observers, options.plane, scene, plane, progress);
   for (const auto& name : options.cameras) {
     const Camera& placed = choose_camera(scene, name);
     const Camera camera = in_world(scene, placed);
@@ -71,17 +64,6 @@ std::vector<glare::Observer> observers_of(const GlareOptions& options, const Sce
     }
     all.push_back(
         glare::Observer::looking(camera.name, camera.position, camera.forward, camera.up));
-  }
-  if (!options.plane.height.empty()) {
-    measuring::SensorGrid grid = plane_of(options.plane, scene);
-    clear_of_furniture(options.plane, scene, std::span(&grid, 1), progress);
-    grid.name = "point";
-    plane = grid.layout;
-    add(glare::observers_on(grid, axes, options.directions));
-  }
-  if (2 * all.size() > limits::max_sensors) {
-    throw UsageError(
-        fmt::format("{} observers, more than {}; rate fewer", all.size(), limits::max_sensors / 2));
   }
   return all;
 }
@@ -122,11 +104,7 @@ Json run_json(const GlareOptions& options, const Scene& scene, const LightMix& m
                         {"highest_ugr", judgement->measured.value},
                         {"met", judgement->met()}};
   }
-  if (plane) {
-    record["plane"] = report::plane_json(*plane);
-    record["plan"] = report::plan_json(RayScene(scene), *plane);
-  }
-  record["observers"] = report::glare_json(all);
+  record.update(report::glare_record(scene, all, plane));
   return record;
 }
 
@@ -137,7 +115,7 @@ std::filesystem::path picture_name(const GlareOptions& options, std::size_t obse
 /// Whether daylight ratings are asked for.
 bool wants_pictures(const GlareOptions& options) {
   if (!options.pictures.empty()) return true;
-  if (options.ratings.empty()) return !options.observers.empty() || !options.cameras.empty();
+  if (options.ratings.empty()) return !options.observers.files.empty() || !options.cameras.empty();
   return std::any_of(options.ratings.begin(), options.ratings.end(),
                      [](const std::string& rating) { return rating != "ugr"; });
 }
@@ -153,11 +131,11 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
   check(render.parameters);
   if (render.integrator == Integrator::path) refuse_photon_map_options(command);
   if (!options.target.empty()) measuring::parse_requirement(options.target);
-  if (options.observers.empty() && options.cameras.empty() && options.plane.height.empty()) {
+  if (options.observers.empty() && options.cameras.empty()) {
     throw UsageError("no observer; give --observers FILE, --grid or --camera NAME");
   }
   note_inputs_of(render);
-  for (const auto& file : options.observers) note_input(file);
+  for (const auto& file : options.observers.files) note_input(file);
   check_outputs_of(options);
 
   const ThreadLimit threads(render.threads);
@@ -206,20 +184,19 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
 
 void add_places(CLI::App& command, GlareOptions& options) {
   const OptionGroup places(command, "Places");
-  places.repeat("--observers", options.observers, "FILE",
-                "eyes and directions of view, lines x y z dx dy dz; repeatable");
+  add_observers_option(places, options.observers);
   places.repeat("--camera", options.cameras, "NAME|INDEX",
                 "name or index of a camera that is an observer; repeatable");
   const std::string height = fmt::format("floor+{:g}", defaults::eye_height);
   CLI::Option* grid =
       places
-          .add("--grid", options.plane.height, "[HEIGHT]",
+          .add("--grid", options.observers.height, "[HEIGHT]",
                "observers over the floor, on the grid of EN 12464-1; default: " + height)
           ->expected(0, 1)
           ->default_str(height);
   places
-      .add("--directions", options.directions, "N", "directions of view at each point of the grid",
-           count_between(1, 360))
+      .add("--directions", options.observers.directions, "N",
+           "directions of view at each point of the grid", count_between(1, 360))
       ->capture_default_str()
       ->needs(grid);
   add_plane_options(places, options.plane);

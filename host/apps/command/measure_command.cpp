@@ -40,6 +40,7 @@ struct MeasureOptions {
   MeasureOutputOptions outputs;
   MeasuringParameters parameters;
   PlaceOptions places;
+  ObserverOptions observers;
   bool walls = false, ceiling = false;
   std::string cylindrical_at, semi_cylindrical_at;  ///< heights, "" = none
   std::string target;                               ///< "" = none
@@ -119,6 +120,22 @@ std::vector<std::string> warnings_of(const Scene& scene, const LightMix& mix,
   return lines;
 }
 
+/// UGR, of new luminaires.
+std::vector<glare::ObserverGlare> rate(std::span<const glare::Observer> observers,
+                                       const Scene& scene, const LightMix& mix,
+                                       std::span<Device> devices,
+                                       const MeasuringParameters& measuring, Progress& progress) {
+  if (observers.empty()) return {};
+  glare::GlareParameters parameters;
+  parameters.by_pictures = false;
+  parameters.measuring = measuring;
+  parameters.measuring.gathering.response = SensorResponse::planar;
+  parameters.measuring.maintenance = 1;
+  const double coverage =
+      glare::coverage_by_luminaires(scene, observers.front(), parameters.samples);
+  return glare::measure_glare(scene, observers, mix, coverage, devices, parameters, {}, progress);
+}
+
 void run_measure(const CLI::App& command, MeasureOptions& options) {
   handle_signals();
   RenderOptions& render = options.render;
@@ -129,14 +146,15 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
     throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
   }
   measuring::parse_requirement(options.target);
-  if (options.daylight_factor && !options.target.empty()) {
+  if (options.daylight_factor && !(options.target.empty() && options.observers.empty())) {
     throw UsageError(
-        "--target needs lux, and --daylight-factor gives per cent; leave out one of them, or rate "
-        "the room by EN 17037 with photile daylight");
+        "--target and UGR are about lamps, and --daylight-factor about the sky; leave out one of "
+        "them, or rate the room by EN 17037 with photile daylight");
   }
   if (options.daylight_factor) take_overcast_sky(render.load);
   note_inputs_of(render);
   note_places(options.places);
+  for (const auto& file : options.observers.files) note_input(file);
   options.outputs.daylight_factor = options.daylight_factor;
   const MeasureOutputs outputs(options.outputs);
 
@@ -150,7 +168,17 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
       options.daylight_factor ? mix_of_sky(render.load, scene, render) : mix_of(scene, render);
   tell_scene(scene, mix, render.load, progress);
   const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
-  if (measuring::are_direct(grids)) measuring::remove_reflections(scene);
+  if (measuring::are_direct(grids)) {
+    if (!options.observers.empty()) {
+      throw UsageError(
+          "targets of emergency lighting have no UGR; leave out --observers and --ugr-at, or the "
+          "target");
+    }
+    measuring::remove_reflections(scene);
+  }
+  std::optional<measuring::PlaneLayout> eyes;
+  const std::vector<glare::Observer> observers =
+      observers_at(options.observers, options.places.plane, scene, eyes, progress);
   outputs.check_names(grids);
   scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
   std::vector<Device> devices = devices_for(render, progress);
@@ -166,6 +194,8 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (options.cylindrical) parameters.gathering.response = SensorResponse::cylindrical;
   const measuring::Readings readings =
       measuring::measure_maintained(scene, grids, mix, devices, parameters, progress);
+  const std::vector<glare::ObserverGlare> rated =
+      rate(observers, scene, mix, devices, parameters, progress);
   if (!leads()) return;
   measuring::Measurement measurement = measuring::measurement_of(grids, readings);
   if (options.daylight_factor) {
@@ -184,10 +214,14 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
     }
   }
   outputs.check_picture(scene, progress);
-  const auto targets =
-      measuring::judge_targets(measurement, observers_in(options.outputs.report.included));
+  nlohmann::ordered_json glare, results = options.outputs.report.included;
+  if (!rated.empty()) {
+    glare = report::glare_record(scene, rated, eyes);
+    results.push_back({{"content", glare}});
+  }
+  const auto targets = measuring::judge_targets(measurement, observers_in(results));
   outputs.write(measurement,
-                {scene, mix, parameters, render.mood.mood, targets,
+                {scene, mix, parameters, render.mood.mood, targets, glare,
                  outputs.any_record()
                      ? measuring::room_size(scene, plane_at(options.places.plane, "floor").inside)
                      : std::nullopt,
@@ -196,6 +230,9 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
                 moods);
   for (const auto& line : report::measurement_lines(measurement, outputs.unit())) {
     std::cout << line << '\n';
+  }
+  if (!rated.empty()) {
+    for (const auto& line : report::glare_lines(rated)) std::cout << line << '\n';
   }
   for (const auto& line : sky_lines(render.load)) std::cout << line << '\n';
   for (const auto& line : measuring::requirement_lines(targets)) std::cout << line << '\n';
@@ -210,6 +247,9 @@ void add_places(CLI::App& command, MeasureOptions& options) {
              "cylindrical illuminance at this height: floor+1.2 for people who sit");
   places.add("--semi-cylindrical-at", options.semi_cylindrical_at, "HEIGHT",
              "semi-cylindrical illuminance at this height, towards four sides");
+  add_observers_option(places, options.observers);
+  places.add("--ugr-at", options.observers.height, "HEIGHT",
+             "UGR of people whose eyes are at this height over the floor, towards four sides");
 }
 
 void add_measuring(CLI::App& command, MeasureOptions& options) {

@@ -127,6 +127,39 @@ std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
   return left;
 }
 
+void add_observers_option(const OptionGroup& places, ObserverOptions& options) {
+  places.repeat(
+      "--observers", options.files, "FILE",
+      "eyes and directions of view whose glare is rated, lines x y z dx dy dz; repeatable");
+}
+
+std::vector<glare::Observer> observers_at(const ObserverOptions& options, PlaneOptions floor,
+                                          const Scene& scene,
+                                          std::optional<measuring::PlaneLayout>& plane,
+                                          Progress& progress) {
+  const auto axes = trace::PlanAxes::in_world(scene);
+  std::vector<glare::Observer> all;
+  const auto add = [&](const std::vector<glare::Observer>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  for (const auto& file : options.files) {
+    add(glare::observers_at(measuring::read_points(file), axes));
+  }
+  if (!options.height.empty()) {
+    floor.height = options.height;
+    measuring::SensorGrid grid = plane_of(floor, scene);
+    clear_of_furniture(floor, scene, std::span(&grid, 1), progress);
+    grid.name = "point";
+    plane = grid.layout;
+    add(glare::observers_on(grid, axes, options.directions));
+  }
+  if (2 * all.size() > limits::max_sensors) {
+    throw UsageError(
+        fmt::format("{} observers, more than {}; rate fewer", all.size(), limits::max_sensors / 2));
+  }
+  return all;
+}
+
 void add_sensor_options(const OptionGroup& group, MeasuringParameters& parameters) {
   group
       .add("--rays", parameters.gathering.rays, "N", "rays per point and repeat",

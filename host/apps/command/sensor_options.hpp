@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "glare/measure_glare.hpp"
 #include "measuring/measurement.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
@@ -60,6 +61,26 @@ measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene);
 /// UsageError where no point of a grid is left.
 std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
                                std::span<measuring::SensorGrid> grids, Progress& progress);
+
+/// People whose glare is rated.
+struct ObserverOptions {
+  std::vector<std::string> files;               ///< of points that face where they look
+  std::string height;                           ///< of eyes over the floor; "" = none
+  int directions = defaults::glare_directions;  ///< at each point over the floor
+
+  bool empty() const { return files.empty() && height.empty(); }
+};
+
+/// Adds --observers.
+void add_observers_option(const OptionGroup& places, ObserverOptions& options);
+
+/// Those of the files, and those over the floor.
+///   plane   becomes that of the latter
+/// Errors: those of read_points and plane_of; UsageError where no point over the floor is free.
+std::vector<glare::Observer> observers_at(const ObserverOptions& options, PlaneOptions floor,
+                                          const Scene& scene,
+                                          std::optional<measuring::PlaneLayout>& plane,
+                                          Progress& progress);
 
 /// Adds --rays and --repeats.
 void add_sensor_options(const OptionGroup& group, MeasuringParameters& parameters);

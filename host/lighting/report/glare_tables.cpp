@@ -4,6 +4,7 @@
 
 #include "common/foreign_text.hpp"
 #include "measuring/requirements.hpp"
+#include "report/plan_surroundings.hpp"
 #include "report/tables.hpp"
 
 namespace photile::report {
@@ -171,6 +172,17 @@ Json glare_json(std::span<const glare::ObserverGlare> all) {
     list.push_back(std::move(entry));
   }
   return list;
+}
+
+Json glare_record(const Scene& scene, std::span<const glare::ObserverGlare> all,
+                  const std::optional<measuring::PlaneLayout>& plane) {
+  Json record = Json::object();
+  if (plane) {
+    record["plane"] = plane_json(*plane);
+    record["plan"] = plan_json(RayScene(scene), *plane);
+  }
+  record["observers"] = glare_json(all);
+  return record;
 }
 
 }  // namespace photile::report

@@ -248,6 +248,7 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
     record["lights"].push_back(
         {{"name", light.name}, {"power", light.power}, {"unit", symbol_of(light.unit)}});
   }
+  if (!run.glare.is_null()) record["glare"] = run.glare;
   for (const auto& target : run.targets) record["targets"].push_back(target_json(target));
   if (const auto& room = run.room) {
     record["room"] = {

@@ -62,6 +62,7 @@ struct MeasureRun {
   const MeasuringParameters& parameters;
   std::string mood = {};  ///< "" = none
   std::vector<measuring::JudgedTarget> targets = {};
+  nlohmann::ordered_json glare = {};  ///< as glare_record; null = none
   std::optional<measuring::RoomSize> room = std::nullopt;
   std::optional<double> ground = std::nullopt;  ///< its reflectance; none without a sky
   /// What the sky is: name and value.

@@ -30,6 +30,9 @@ std::string glare_csv(std::span<const glare::ObserverGlare> all,
 
 /// The ratings with the luminaires and the sources of pictures.
 nlohmann::ordered_json glare_json(std::span<const glare::ObserverGlare> all);
+/// These as `observers`, with the `plane` and the `plan` of those over a floor.
+nlohmann::ordered_json glare_record(const Scene& scene, std::span<const glare::ObserverGlare> all,
+                                    const std::optional<measuring::PlaneLayout>& plane);
 
 /// A value with so many digits that count; large ones are whole numbers in place of powers of ten:
 /// "12500", not "1.25e+04".

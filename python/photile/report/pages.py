@@ -96,7 +96,8 @@ class Report:
         self._luminaires = Luminaires(record)
         outdoors = self._about.get("outdoor_lux") or outdoors_of(each["content"] for each in self._about["included"])
         self._included = Included(outdoors)
-        for each in self._about["included"]:
+        glare = [{"file": "glare", "content": record["glare"]}] if "glare" in record else []
+        for each in [*glare, *self._about["included"]]:
             try:
                 self._included.add(each["content"])
             except (KeyError, IndexError, TypeError, ValueError, AttributeError):
