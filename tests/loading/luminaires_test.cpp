@@ -1,4 +1,6 @@
 // Lamps that a user places: where they are, and what their openings send.
+#include "loading/luminaires.hpp"
+
 #include <numbers>
 
 #include "message_of.hpp"
@@ -72,6 +74,32 @@ TEST_CASE("a lamp below the ceiling hangs beside a hole in its middle") {
       glm::dvec3(scene.corners(scene.lights[0].triangles.at(0))[0]) + scene.origin;
   CHECK(lamp.y == Approx(3).margin(0.01));
   CHECK(std::max(std::abs(lamp.x), std::abs(lamp.z)) < 0.3);
+}
+
+TEST_CASE("lamps below a ceiling are in the middle of the room of a point, else of the largest") {
+  const SceneFolderOnDisk folder;
+  folder.write("lamp.ies", ies(lambertian));
+  std::string rooms;
+  for (const auto& [low, high, height] : {std::tuple(0, 6, 3.0), std::tuple(7, 10, 2.6)}) {
+    for (const double y : {0.0, height}) {
+      rooms += fmt::format("v {0} {2} 0\nv {1} {2} 0\nv {1} {2} 4\nv {0} {2} 4\n", low, high, y);
+    }
+    rooms += "f -8 -5 -6 -7\nf -4 -3 -2 -1\nf -8 -7 -3 -4\n";
+    rooms += "f -7 -6 -2 -3\nf -6 -5 -1 -2\nf -5 -8 -4 -1\n";
+  }
+  SceneLoadOptions options;
+  options.sun = Sun::parse("180,60,80000");
+  Scene scene = load_scene(folder.write("rooms.obj", rooms), options);
+  scene.cameras = {Camera::look_at({-5, 1, -5}, {-9, 1, -5}, {0, 1, 0}, 1)};  // that sees neither
+  files::Warnings unheard;
+  const auto list = loading::LuminaireList::parse(
+      R"([{"file": "lamp.ies", "size": [1, 1], "position": "ceiling"},
+          {"file": "lamp.ies", "size": [1, 1], "position": "ceiling", "inside": [9, 1, 1]}])",
+      "lamps.json");
+  const auto placed =
+      loading::add_luminaires(list, folder.path / "lamps.json", false, 1, scene, unheard);
+  CHECK(glm::distance(placed[0].position + scene.origin, {3, 2.995, 2}) < 1e-3);
+  CHECK(glm::distance(placed[1].position + scene.origin, {8.5, 2.595, 2}) < 1e-3);
 }
 
 TEST_CASE("a placed lamp has the flux of its file, and its place, aim and size") {

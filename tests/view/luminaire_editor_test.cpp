@@ -21,7 +21,7 @@ using loading::PlacedLuminaires;
 
 constexpr const char* two_records =
     R"([{"name": "panels", "file": "downlight.ies", "position": "ceiling", "size": [1.2, 0.3],
-         "count": [3, 2], "spacing": [1.8, 2.4], "lumens": 3600.5},
+         "count": [3, 2], "spacing": [1.8, 2.4], "lumens": 3600.5, "inside": [0.1, 1.5, 0.5]},
         {"rotation": 30, "file": "downlight.ies", "position": [0.1, 2.4, -0.7],
          "size": [0.2, 0.2]}])";
 
@@ -163,6 +163,7 @@ TEST_CASE("rays meet openings, and what is held follows the pointer in its plane
   const glm::dvec3 middle = editor.placed()[0].position;
   editor.drag(eye, towards(middle), towards(middle + moved));
   CHECK(editor.list().entries[0]["position"].is_array());  // no longer "ceiling"
+  CHECK_FALSE(editor.list().entries[0].contains("inside"));
   CHECK(editor.list().entries[0]["count"] == nlohmann::ordered_json({3, 2}));
 }
 

@@ -145,6 +145,7 @@ glm::dvec3 LuminaireEditor::in_world(const glm::dvec3& in_scene) const {
 
 void LuminaireEditor::write_position(const glm::dvec3& in_scene) {
   entry()["position"] = vector_of(in_world(in_scene), millimetre);
+  entry().erase("inside");  // a room whose ceiling it hung from
 }
 
 void LuminaireEditor::place(const glm::dvec3& position, const glm::dvec3& normal) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <map>
@@ -52,7 +51,7 @@ struct LampKind {
 struct Shared {
   std::map<std::string, IntensityDistribution> files = {};
   std::map<std::tuple<std::string, double, double>, LampKind> kinds = {};
-  std::optional<std::optional<glm::dvec3>> ceiling = {};  ///< its middle, once it was looked for
+  std::map<std::string, glm::dvec3> ceilings = {};  ///< their middles, by "inside"
 };
 
 struct LuminaireArray {
@@ -61,8 +60,8 @@ struct LuminaireArray {
 };
 
 /// A pair of numbers, or nothing where the member is missing.
-std::optional<std::array<double, 2>> pair_of(const json& entry, const JsonObject& object,
-                                             const char* key, double lowest, double highest) {
+std::optional<glm::dvec2> pair_of(const json& entry, const JsonObject& object, const char* key,
+                                  double lowest, double highest) {
   if (!object.has(key)) return std::nullopt;
   const json& value = entry[key];
   const auto in_range = [&](const json& number) {
@@ -71,7 +70,7 @@ std::optional<std::array<double, 2>> pair_of(const json& entry, const JsonObject
   if (!value.is_array() || value.size() != 2 || !in_range(value[0]) || !in_range(value[1])) {
     object.refuse(fmt::format("'{}' is not two numbers from {:g} to {:g}", key, lowest, highest));
   }
-  return std::array{value[0].get<double>(), value[1].get<double>()};
+  return glm::dvec2(value[0].get<double>(), value[1].get<double>());
 }
 
 /// Share of the flux that shines away from the aim.
@@ -119,45 +118,52 @@ LampKind kind_of(const std::string& file, double kelvin, const JsonObject& objec
   }
 }
 
-/// The middle of the ceiling of the first camera's room.
-std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene) {
+/// The middle of the ceiling of the room around a point, else of the first camera's room, else of
+/// the largest.
+std::optional<glm::dvec3> middle_of_ceiling(const Scene& scene,
+                                            const std::optional<glm::dvec3>& inside) {
   const RayScene rays(scene);
   const trace::FlushDenormals flush_denormals;
   const auto axes = trace::PlanAxes();
-  const Camera camera = scene.cameras.empty() ? trace::place_camera(scene) : scene.cameras.front();
-  const auto room = trace::Room::of_camera(rays, axes, camera);
+  std::optional<trace::Room> room =
+      inside ? trace::Room::around(rays, axes, position_in_scene(scene, *inside))
+             : trace::Room::meant(rays, axes, {});
+  if (!room && !inside) room = trace::Room::of_camera(rays, axes, trace::place_camera(scene));
   if (!room) return std::nullopt;
   const glm::dvec2 plan = 0.5 * (room->low() + room->high());
   const glm::dvec3 middle =
       plan.x * axes.right + plan.y * axes.ahead + room->cut_height() * axes.up;
-  const auto above = [&](const glm::dvec3& below) {
-    return trace::intersect(rays, glm::vec3(below), glm::vec3(axes.up));
-  };
-  auto ceiling = above(middle);
-  if (!ceiling) {
-    // There is a hole or a seam.
-    std::vector<glm::dvec3> others = room->positions();
-    std::sort(others.begin(), others.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
-      return std::pair(glm::distance(a, middle), a.x) < std::pair(glm::distance(b, middle), b.x);
-    });
-    for (std::size_t i = 0; i < others.size() && !ceiling; ++i) ceiling = above(others[i]);
+  // Above the middle there may be a hole or a seam.
+  std::vector<glm::dvec3> positions = room->positions();
+  positions.push_back(middle);
+  std::ranges::sort(positions, {}, [&](const glm::dvec3& position) {
+    return std::pair(glm::distance(position, middle), position.x);
+  });
+  const glm::vec3 up(axes.up);
+  for (const glm::dvec3& position : positions) {
+    const auto ceiling = trace::intersect(rays, glm::vec3(position), up);
+    if (!ceiling) continue;
+    return glm::dvec3(trace::surface_hit(scene, *ceiling, up).position) - below_ceiling * axes.up;
   }
-  if (!ceiling) return std::nullopt;
-  const trace::SurfacePoint point = trace::surface_hit(scene, *ceiling, glm::vec3(axes.up));
-  return glm::dvec3(point.position) - below_ceiling * axes.up;
+  return std::nullopt;
 }
 
 glm::dvec3 position_of(const json& entry, const JsonObject& object, const Scene& scene,
                        Shared& shared) {
-  if (!entry.contains("position") || entry["position"] != "ceiling") {
-    return position_in_scene(scene, object.vector("position"));
+  const bool hangs = entry.value("position", json()) == "ceiling";
+  const auto inside = object.has("inside") ? std::optional(object.vector("inside")) : std::nullopt;
+  if (inside && !hangs) object.refuse("'inside' is for \"position\": \"ceiling\"; leave it out");
+  if (!hangs) return position_in_scene(scene, object.vector("position"));
+  const std::string key = inside ? entry["inside"].dump() : "";
+  if (const auto known = shared.ceilings.find(key); known != shared.ceilings.end()) {
+    return known->second;
   }
-  if (!shared.ceiling) shared.ceiling = middle_of_ceiling(scene);
-  const auto& middle = *shared.ceiling;
+  const auto middle = middle_of_ceiling(scene, inside);
   if (!middle) {
-    object.refuse("'position': the first camera sees no room with a ceiling; give three numbers");
+    object.refuse(
+        "'position': no such room with a ceiling; give 'inside', a point in one, or numbers");
   }
-  return *middle;
+  return shared.ceilings[key] = *middle;
 }
 
 /// Along x and across, of the flat opening that is seen from below; of a round one a rectangle of
@@ -190,21 +196,17 @@ LuminaireArray array_of(const json& entry, const JsonObject& object, files::Scen
   if (object.has("lumens")) placed.lumens = object.number("lumens", 0, limits::max_light_power);
   if (object.has("circuit")) placed.circuit = object.text("circuit", "");
   if (const auto count = pair_of(entry, object, "count", 1, most_in_a_row)) {
-    placed.columns = static_cast<int>((*count)[0]);
-    placed.rows = static_cast<int>((*count)[1]);
-    if (placed.columns != (*count)[0] || placed.rows != (*count)[1]) {
-      object.refuse("'count' is not two whole numbers");
-    }
+    if (*count != glm::floor(*count)) object.refuse("'count' is not two whole numbers");
+    placed.columns = static_cast<int>(count->x);
+    placed.rows = static_cast<int>(count->y);
   }
   if (const auto spacing = pair_of(entry, object, "spacing", 0, limits::max_coordinate)) {
-    placed.spacing = {(*spacing)[0], (*spacing)[1]};
+    placed.spacing = *spacing;
   } else if (placed.columns * placed.rows > 1) {
     object.refuse("'count' of several lamps needs 'spacing', two numbers of metres");
   }
-  std::optional<glm::dvec2> size = size_of(distribution.opening());
-  if (const auto given = pair_of(entry, object, "size", 1e-4, limits::max_coordinate)) {
-    size = glm::dvec2((*given)[0], (*given)[1]);
-  }
+  std::optional<glm::dvec2> size = pair_of(entry, object, "size", 1e-4, limits::max_coordinate);
+  if (!size) size = size_of(distribution.opening());
   if (!size) {
     object.refuse(
         "'size' is missing, and the photometric file states no luminous opening visible from "
@@ -307,8 +309,8 @@ std::vector<PlacedLuminaires> add_luminaires(const LuminaireList& list,
   for (std::size_t i = 0; i < list.entries.size(); ++i) {
     const json entry = list.entries[i];
     const JsonObject object(entry, fmt::format("{}: luminaire {}", file.string(), i + 1),
-                            {"name", "file", "position", "aim", "rotation", "lumens", "kelvin",
-                             "maintenance", "circuit", "count", "spacing", "size"});
+                            {"name", "file", "position", "inside", "aim", "rotation", "lumens",
+                             "kelvin", "maintenance", "circuit", "count", "spacing", "size"});
     arrays.push_back(array_of(entry, object, folder, shared, scene, warnings));
     const PlacedLuminaires& placed = arrays.back().placed;
     lamps += static_cast<std::size_t>(placed.columns) * static_cast<std::size_t>(placed.rows);

@@ -67,14 +67,8 @@ glm::dmat3 luminaire_axes(const glm::dvec3& aim, double rotation);
 std::optional<glm::dvec2> stated_opening(const std::filesystem::path& photometry);
 
 /// Adds lamps to a scene with its triangles and area lights: for each a flat opening that shines by
-/// the intensities of its photometric file. Members: `file` (.ies or .ldt, beside the JSON file),
-/// `position` (metres in the scene file's world, the middle of the array; "ceiling" = the middle of
-/// the ceiling of the first camera's room), `aim` (down), `rotation` (degrees about the aim),
-/// `lumens` (those of the file), `kelvin` (neutral white), `maintenance` (that of a measurement),
-/// `count` and `spacing` (along the lamp's x axis and across), `size` of the opening in metres (x,
-/// across; the file's), `name`, which is that of the layer that all of an entry share, `circuit`,
-/// the layer that it shares with other entries. Lamps without a camera count on
-/// trace::place_camera. Returns where each entry's are.
+/// the intensities of its photometric file. docs/guide/luminaires.md has the members of an entry.
+/// Returns where each entry's are.
 ///   file            of the list, for messages and for the folder of photometric files
 ///   allow_outside   photometric files outside this folder may be read, too
 /// Errors: InputError naming the file, the entry and the member.
