@@ -27,10 +27,6 @@ COMMON = ("Picture", "Photons", "Estimate", "Settings", "Scene", "Lights", "Devi
 COLUMN = 30  # of the help, where what an option does begins
 WIDEST = 40  # of names that stay on one line
 DEFAULT = re.compile(r"=([a-z0-9.][^|=]*)$")
-# The tables of EN 12464-1:2021 from each number on.
-SECTIONS = {9: "Traffic zones", 10: "Rest and sanitation", 11: "Control rooms", 12: "Stores and logistics",
-            14: "Industry and crafts", 34: "Offices", 35: "Shops", 36: "Public places", 42: "Indoor car parks",
-            43: "Education", 45: "Health care"}
 EXIT_CODE = re.compile(r"^  (\w+) = (\d+), +///< (.*)$", re.MULTILINE)
 
 
@@ -117,16 +113,14 @@ def program_text(photile, words):
 
 
 def targets_text(text):
-    """The rows of a table of targets, with a line above those of each section."""
+    """The rows of a table of targets, and lines of areas between them."""
     heading, *rows = [line.split(";") for line in text.removeprefix('R"(').splitlines()[:-1]]
     lines = ["<!-- not measured -->", "", f"| {' | '.join(heading[:-1])} |", "|---|--:|---|" + "--:|" * 7]
-    section = None
     for row in rows:
+        if len(row) == 1:
+            lines.append(f"| **{row[0]}** |" + " |" * (len(heading) - 2))
+            continue
         name, *values, confirmed = row + [""] * (len(heading) - len(row))
-        of = max(first for first in SECTIONS if first <= int(values[0]))
-        if of != section:
-            section = of
-            lines.append(f"| **{SECTIONS[of]}** |" + " |" * len(values))
         lines.append(f"| `{name}`{'' if confirmed else '*'} | {' | '.join(values)} |")
     return "\n".join(lines)
 

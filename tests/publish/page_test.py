@@ -9,6 +9,7 @@ import datetime
 import json
 import math
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -185,12 +186,13 @@ class Browser:
     def press(self, key, modifiers=0, code=None):
         self.hold(key, 0, modifiers, code)
 
-    def drag(self, *points, button="left"):
+    def drag(self, *points, button="left", modifiers=0):
         """Presses a button at the first of these points of the page, and lets it go at the last."""
         kinds = ["Pressed", *["Moved"] * (len(points) - 1), "Released"]
         for kind, (x, y) in zip(kinds, [*points, points[-1]]):
             self.run_command("Input.dispatchMouseEvent",
                              {"type": f"mouse{kind}", "x": x, "y": y, "button": button, "clickCount": 1,
+                              "modifiers": modifiers,
                               "buttons": 0 if kind == "Released" else {"left": 1, "right": 2}[button]})
             time.sleep(0.05)
 
@@ -606,6 +608,38 @@ return [box.left + box.width / 2, box.top + box.height / 2, box.width];""")
     browser.run_command("Emulation.setTouchEmulationEnabled", {"enabled": False})
 
 
+def check_plan(browser):
+    """T shows the storey to scale, cut below its ceiling; what is moved there comes to steps, lines and middles."""
+    browser.run(STAND, MIDDLE, NORTH)
+    browser.press("t")
+    *storey, pixel = browser.run("const {floor, ceiling, cut, walls, metresAcross} = page.plan; "
+                                 "return [floor, ceiling, cut, walls.getTotalLength(), metresAcross]")
+    near(storey, [0, 3, 1.6 + 0.9 * 1.4, 2 * (6 + 5)], 1e-2)
+    place_of = "return page.placeOf(arguments[0])"
+    low, high, top = (np.array(browser.run(place_of, place)) for place in ([0, 0, 0], [6, 0, 5], [0, 3, 0]))
+    near(high - low, np.array([6, 5]) / pixel, 0.1)
+    near(top, low, 0.1)
+    table = [4.5, 0.8, 1.5]
+    x, y = browser.run(place_of, table)
+    browser.click(x, y)
+    near(browser.run("return page.points.all[0].place"), table, pixel)
+    browser.run("page.points.removeAll()")
+    browser.drag((x, y), (x + 20, y + 10))
+    near(browser.run(place_of, table), [x + 20, y + 10], 0.1)
+    under = "return [...page.plan.pointAt(100, 100, 0), page.plan.metres]"
+    before = browser.run(under)
+    browser.turn_wheel()
+    near(browser.run(under), [*before[:3], before[3] * math.exp(-0.08)], 1e-3)
+    near(browser.run("""
+const {plan} = page;
+plan.metres = 2;  // 8 pixels are 8 cm
+return [[3.03, 2.46, 0, 9, 9], [1.3, 1.1, 0, 1.33, 4], [1.3, 1.1, 0.5, 1.83, 4], [1.2, 1.1, 0, 1.33, 4]].map(
+    ([x, z, aside, otherX, otherZ]) => plan.snap(
+        [x, 2.9, z], [[-aside, 0, 0], [aside, 0, 0]], [[otherX, 2.9, otherZ]], 0.25).place);"""), [[3, 2.9, 2.5], [1.33, 2.9, 1], [1.33, 2.9, 1], [1.25, 2.9, 1]], 1e-6)
+    browser.press("t")
+    assert browser.viewer()["eye"] == MIDDLE and not browser.run("return page.plan.on")
+
+
 def check_gamepad(browser):
     browser.run(STAND, MIDDLE, NORTH)
     browser.run("""
@@ -778,7 +812,7 @@ return [page.lights.skyPowers(), document.querySelector('output[for=date]').text
 
 def check_points(browser, folder, scene, *options):
     """Clicks stay as rings and rows, and `photile measure` finds the saved ones where they are, with the same lux."""
-    browser.run("page.view(0); page.wake()")
+    browser.run("page.stand(0); page.wake()")
     browser.rest()
     places = [(150, 90), (90, 110), (240, 120)]
     for place in places:
@@ -787,6 +821,12 @@ def check_points(browser, folder, scene, *options):
                         "parseFloat(ring.style.left), parseFloat(ring.style.top)])")
     assert [ring[0] for ring in rings] == ["1", "2", "3"], rings
     near([ring[1:] for ring in rings], places, 1)
+    # Targets are listed by areas as the reference has them.
+    offered = browser.run("return [...document.querySelectorAll('#target optgroup, #target optgroup option')].map("
+                          "(one) => one.label)")
+    listed = re.findall(r"^\| (?:\*\*(.+)\*\*|`(.+)`\*? \| \d+ \| [^|]+ \| (\d+)) \|",
+                        (SOURCE / "docs/reference/targets.md").read_text(), re.MULTILINE)
+    assert len(listed) > 100 and offered == [area or f"{lux} lx {name.replace('-', ' ')}" for area, name, lux in listed]
     rows = "return [...document.querySelectorAll('#points li')].map((row) => row.textContent)"
     browser.run("document.querySelectorAll('#points .drop')[1].click()")
     full, error = browser.run("const {lux, error} = page.points.read(page.points.all[0]); return [lux[0], error[0]]")
@@ -883,8 +923,8 @@ def test_controls(browser, folder):
     photile("publish", scene, "-o", page, "--eye", "3,1.6,4.5", "--look-at", "3,2,0", *made)
     browser.open(page.as_uri())
     assert browser.run("return [room.cameras[0].name, ...room.cameras[0].position]") == ["view", 3, 1.6, 4.5]
-    for check in (check_keyboard, check_slow_frames, check_mouse, check_touch, check_gamepad, check_presets, check_lamps,
-                  check_undo):
+    for check in (check_keyboard, check_slow_frames, check_mouse, check_touch, check_plan, check_gamepad, check_presets,
+                  check_lamps, check_undo):
         check(browser)
     check_pictures(browser, folder)
     check_coats(browser)

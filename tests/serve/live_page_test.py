@@ -298,6 +298,25 @@ def check_many_lights(browser, folder):
     assert draws[0] == draws[1] > 1, draws
 
 
+def check_plan(browser, entries, loaded):
+    """On the plan the second lamp comes into line with the first, with Shift anywhere, with an arrow a step on."""
+    middles = "return page.live.luminaires.state.entries.map(({middles}) => middles[0])"
+    browser.run("const [, [x, , z]] = arguments[0]; page.plan.open({middle: [x, z], metres: 4})", browser.run(middles))
+    for modifiers, beside in ((0, 0), (8, 0.3)):
+        first, second = browser.run(middles)
+        goal = [first[0] + (beside or 0.05), second[1], second[2] + 0.4]
+        start, end = (browser.run("return page.placeOf(arguments[0])", place) for place in (second, goal))
+        browser.drag(start, (start[0], start[1] + 5), end, modifiers=modifiers)
+        browser.until("const {drags, state: {entries: [one, other]}} = page.live.luminaires; return drags === null && "
+                      "Math.abs(other.middles[0][0] - one.middles[0][0] - arguments[0]) < 0.002", beside)
+        loaded("page.plan.on")
+    before = entries()[1]["position"]
+    browser.press("ArrowRight")
+    loaded("page.plan.on && page.live.luminaires.state.unsaved")
+    near(entries()[1]["position"], np.array(before) + [0.1, 0, 0], 0.0015)
+    browser.press("t")
+
+
 def check_luminaires(browser, folder):
     """Lamps are placed by a click, dragged and copied; the page goes on where it was with each new scene."""
     scene, lamps = room_of_gallery(SOURCE, folder), folder / "lamps.json"
@@ -361,6 +380,7 @@ def check_luminaires(browser, folder):
         browser.click(60, 120)
         browser.until("return page.points.all.length === 2")
         assert len(entries()) == 2
+        check_plan(browser, entries, loaded)
         browser.leave()
 
 

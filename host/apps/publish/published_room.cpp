@@ -81,7 +81,8 @@ json world_of(const Scene& scene) {
 json targets() {
   json list;
   for (const measuring::Requirement& row : measuring::known_requirements()) {
-    if (!row.is_direct) list.push_back({{"name", row.name}, {"lux", row.mean}});
+    if (row.is_direct) continue;
+    list.push_back({{"area", row.area}, {"name", row.name}, {"what", row.what}, {"lux", row.mean}});
   }
   return list;
 }

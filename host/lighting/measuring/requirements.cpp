@@ -34,8 +34,9 @@ double* field_of(Requirement& requirement, std::string_view word) {
   return found == fields.end() ? nullptr : found->second;
 }
 
-// Raw string literals: headings, then a row a line; an empty cell requires nothing. Their sources:
-// docs/reference/targets.md. Tasks with a high risk that need over 150 lux need a tenth of it.
+// Raw string literals: headings, then a row a line, areas of tables between them; an empty cell
+// requires nothing. Their sources: docs/reference/targets.md. Tasks with a high risk that need over
+// 150 lux need a tenth of it.
 constexpr const char* tables =
 #include "measuring/en12464_1.csv"
 #include "measuring/en1838.csv"
@@ -44,12 +45,13 @@ constexpr const char* tables =
 std::vector<Requirement> read_rows() {
   std::vector<Requirement> rows;
   std::istringstream lines(tables);
-  for (std::string heading, line, word, cell; std::getline(lines, line);) {
-    if (line.starts_with("name;")) {
-      heading = line;
-      continue;
-    }
+  for (std::string heading, area, line, word, cell; std::getline(lines, line);) {
+    const bool is_heading = line.starts_with("name;"), is_area = line.find(';') == line.npos;
+    if (is_heading) heading = line;
+    if (is_area) area = line;
+    if (is_heading || is_area) continue;
     Requirement& row = rows.emplace_back();
+    row.area = area;
     std::istringstream words(heading), cells(line);
     while (std::getline(words, word, ';') && std::getline(cells, cell, ';')) {
       if (word == "name") row.name = cell;

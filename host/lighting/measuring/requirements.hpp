@@ -14,6 +14,7 @@ namespace photile::measuring {
 /// A row of EN 12464-1:2021 or EN 1838:2013, or one of the user's own. 0 = nothing is required.
 struct Requirement {
   std::string name;        ///< "office-desk"
+  std::string area = {};   ///< "Offices"
   std::string reference;   ///< "EN 12464-1:2021, table 34, required values"
   std::string what;        ///< "writing, typing, reading, data processing"
   double mean = 0;         ///< E_m, lux, maintained, on the task area

@@ -22,6 +22,7 @@ class Glare {
     find('#display .choice').append(element('label', {}, this.radio, element('span', {textContent: 'Glare'})));
     this.radio.addEventListener('input', () => {
       live.page.setMode(0);
+      live.page.plan.close();
       this.radio.checked = true;
       this.legend.replaceChildren(element('li', {textContent: 'Marks appear with the exact picture.'}));
     });

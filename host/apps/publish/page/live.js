@@ -116,11 +116,11 @@ class Live {
       return;
     }
     const {page, renderer} = this, {canvas, unit} = renderer;
-    renderer.draw(page.walker);
+    renderer.draw(page.view);
     const exposes = this.exposes || room.lights.some(({name}) => name === 'work_light');
     this.reloads = true;
     sessionStorage.setItem('kept', JSON.stringify({
-      state: page.state, mode: renderer.mode, exposes, unit, folded: find('#controls').hidden,
+      state: page.state, plan: page.plan.shown, step: this.luminaires?.step, mode: renderer.mode, exposes, unit, folded: find('#controls').hidden,
       pace: Number(find('#speed').value), follows: find('#follow').checked,
       points: page.points.all.map(({place, normal}) => ({place, normal})), scroll: find('#controls').scrollTop, picture: canvas.toDataURL('image/jpeg')}));
     location.reload();
@@ -230,7 +230,9 @@ class Live {
   }
 
   /// Whether a click at a place of the page is for one of the tools.
-  async click(x, y) { return await this.photons.click(x, y) || Boolean(await this.luminaires?.click(x, y)); }
+  async click(x, y) {
+    return (!this.page.plan.on && await this.photons.click(x, y)) || Boolean(await this.luminaires?.click(x, y));
+  }
 
   /// Tells where the viewer looks, if that has changed.
   look() {

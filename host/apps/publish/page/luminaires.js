@@ -1,8 +1,9 @@
 // Luminaires on the live page: the server keeps their list (host/apps/serve/live_luminaires.cpp), and loads
 // the scene again with them.
 
-/// Openings that are outlined, at most.
-const mostOutlines = 500;
+/// Openings that are outlined, at most; metres between the places where lamps are put on a plan; pixels within which
+/// they are grasped there.
+const mostOutlines = 500, planStep = 0.1, grasp = 10;
 
 class Luminaires {
   ///   live   that hears of them
@@ -10,15 +11,15 @@ class Luminaires {
     this.live = live;
     this.page = live.page;
     this.places = false;  // whether the next click does
-    this.drags = null;    // the selected lamps: {from, to}, directions to where they are held
-    this.outlines = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
-    this.outlines.id = 'outlines';
+    this.drags = null;    // the lamps that are held: {from, to, edit(from, to)}; on a plan they are places of theirs
+    this.step = kept?.step ?? planStep;
+    this.outlines = svgElement('svg', {id: 'outlines'});
     this.page.canvas.after(this.outlines);
     this.makeSection();
     this.listen();
     this.page.history.beyond = (what) => this.edit({[what]: true});
     find('#about dl').insertAdjacentHTML('beforeend', `<dt><kbd>B</kbd> <kbd>R</kbd> <kbd>Ctrl+D</kbd> <kbd>Delete</kbd></dt>
-        <dd>place, turn, duplicate, remove luminaires</dd>`);
+        <dd>place, turn, duplicate, remove luminaires; on the plan drag them, or use the arrow keys</dd>`);
   }
 
   makeSection() {
@@ -53,6 +54,11 @@ class Luminaires {
       return {array: {count, spacing}};
     };
     const turn = (degrees) => this.edit({rotate: degrees});
+    const step = element('input', {type: 'number', min: 0, step: 'any', value: this.step, id: 'snap'});
+    step.addEventListener('input', () => { this.step = step.valueAsNumber || 0; });
+    this.snaps = element('div', {className: 'entry', hidden: true}, element('label', {
+      htmlFor: step.id, textContent: 'Snap, m', title: 'On the plan lamps are put at multiples of this in the coordinates ' +
+          'of the scene file, or in line with others or with the middle of the room; with Shift anywhere'}), step);
     this.selected = element('div', {className: 'form'},
         field('position', 'Position, m', 3, {}, (position) => ({position})),
         field('rotation', 'Rotation, °', 1, {min: -180, max: 180},
@@ -68,7 +74,7 @@ class Luminaires {
         element('div', {className: 'name'}, element('b', {textContent: 'Luminaires'}), this.status,
                 button('↶', 'Undo the last edit of luminaires', () => this.edit({undo: true})),
                 button('↷', 'Redo it', () => this.edit({redo: true})), this.saves),
-        element('div', {className: 'place'}, this.file, this.placer), this.list, this.selected);
+        element('div', {className: 'place'}, this.file, this.placer), this.snaps, this.list, this.selected);
     section.setAttribute('aria-label', 'Luminaires');
     find('#lights').before(section);
   }
@@ -117,27 +123,39 @@ class Luminaires {
     this.outlines.classList.toggle('places', places);
   }
 
-  /// Outlines of all openings over the picture.
+  /// Outlines of all openings over the picture, or of those of its storey over the plan.
   outline() {
     if (!this.state) return;
-    const shapes = [];
+    const {plan} = this.page, shapes = [];
+    let left = mostOutlines;
     this.state.entries.forEach(({middles, across, along}, i) => {
-      for (const middle of middles.slice(0, mostOutlines - shapes.length)) {
+      for (const middle of middles.slice(0, left)) {
         const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) => this.page.placeOf(
             add(middle, add(scaled(across, x), scaled(along, y)))));
-        if (corners.includes(null)) continue;
-        const shape = document.createElementNS('http://www.w3.org/2000/svg', 'polygon');
-        shape.setAttribute('points', corners.map((corner) => corner.join()).join(' '));
-        shape.classList.toggle('selected', i === this.state.selected);
-        shapes.push(shape);
+        if (corners.includes(null) || (plan.on && !plan.holds(middle))) continue;
+        --left;
+        const [cx, cy] = this.page.placeOf(middle), points = corners.map((corner) => corner.join()).join(' ');
+        const own = [svgElement('polygon', {points}), ...(plan.on ? [svgElement('circle', {cx, cy, r: grasp})] : [])];
+        for (const shape of own) {
+          shape.dataset.entry = i;
+          shape.classList.toggle('selected', i === this.state.selected);
+        }
+        shapes.push(...own);
       }
     });
     this.outlines.replaceChildren(...shapes);
+    this.snaps.hidden = !plan.on;
+    if (plan.on) plan.show(this.drags?.guides ?? [], (this.entry?.middles ?? []).filter((middle) => plan.holds(middle)));
   }
 
   /// Whether a click is for lamps.
   async click(x, y) {
     if (!this.state) return false;
+    const {plan} = this.page;
+    if (plan.on) {
+      if (this.places) await this.hang(plan.pointAt(x, y, plan.cut));
+      return this.places;
+    }
     const hit = this.page.meet(x, y), direction = this.page.directionTo(x, y);
     if (this.places) {
       if (!hit) return true;
@@ -154,17 +172,42 @@ class Luminaires {
     return Boolean(answer?.picked);
   }
 
+  /// Puts a lamp below the ceiling over a place of the plan.
+  async hang(place) {
+    const {plan, surfaces} = this.page, below = plan.snap(place, [[0, 0, 0]], this.middlesBut(-1), this.step).place;
+    const above = surfaces.meet(below, [0, 1, 0]);
+    if (!above) {
+      tell('There is no ceiling.');
+      return;
+    }
+    this.setPlaces(false);
+    await this.edit({place: {place: add(below, [0, above.distance, 0]), normal: [0, -1, 0]}});
+  }
+
+  /// Of the lamps of other entries on the plan.
+  middlesBut(entry) {
+    return this.state.entries.flatMap(({middles}, i) => (i === entry ? [] : middles)).filter(
+        (middle) => this.page.plan.holds(middle));
+  }
+
   listen() {
     const {outlines} = this;
     outlines.addEventListener('pointerdown', (event) => {
       outlines.setPointerCapture(event.pointerId);
-      const from = this.page.directionTo(event.clientX, event.clientY);
-      this.drags = {eye: this.page.walker.eye.slice(), from, to: from};
+      const {page, page: {plan}} = this, at = (one) => [one.clientX, one.clientY];
+      if (plan.on) {
+        this.grasp(Number(event.target.dataset.entry), event);
+        return;
+      }
+      const from = page.directionTo(...at(event)), eye = page.walker.eye.slice();
+      this.drags = {from, to: from, follow: (one) => page.directionTo(...at(one)),
+                    edit: (before, to) => ({drag: {eye, from: before, to}})};
     });
     outlines.addEventListener('pointermove', (event) => {
       if (!this.drags) return;
-      this.drags.to = this.page.directionTo(event.clientX, event.clientY);
+      this.drags.to = this.drags.follow(event);
       this.drag();
+      this.outline();
     });
     outlines.addEventListener('lostpointercapture', () => this.release());
     window.addEventListener('keydown', (event) => this.press(event));
@@ -173,15 +216,32 @@ class Luminaires {
     });
   }
 
+  /// The middle of an entry's lamps.
+  middleOf({middles}) { return scaled(middles.reduce(add), 1 / middles.length); }
+
+  /// Holds an entry on the plan. It is moved from its first place, so that what snaps does not creep.
+  grasp(i, {clientX, clientY}) {
+    const {plan} = this.page, entry = this.state.entries[i], from = this.middleOf(entry), others = this.middlesBut(i);
+    const held = plan.pointAt(clientX, clientY, from[1]), offsets = entry.middles.map((one) => subtract(one, from));
+    const follow = (event) => {
+      const to = add(from, subtract(plan.pointAt(event.clientX, event.clientY, from[1]), held));
+      const {place, guides} = event.shiftKey ? {place: to, guides: []} : plan.snap(to, offsets, others, this.step);
+      this.drags.guides = guides;
+      return place;
+    };
+    this.drags = {from, to: from, follow, edit: (_, to) => ({select: i, position: positionInWorld(to)})};
+    if (i !== this.state.selected) this.edit({select: i});
+  }
+
   /// Moves what is held to where the pointer is by now; one post follows the other.
   async drag() {
     const {drags} = this;
     if (this.moves) return;
     this.moves = true;
     while (drags.to !== drags.from) {
-      const {eye, from, to} = drags;
+      const {from, to} = drags;
       drags.from = to;
-      await this.edit({drag: {eye, from, to}, held: true});
+      await this.edit({...drags.edit(from, to), held: true});
     }
     this.moves = false;
     if (this.drags !== drags) await this.edit({held: false});
@@ -190,12 +250,19 @@ class Luminaires {
   release() {
     const {drags} = this;
     this.drags = null;
+    this.page.wake();
     if (!this.moves && drags) this.edit({held: false});
   }
 
   press(event) {
     if (isWriting(event.target) || find('#about').open) return;
     const key = event.key.toUpperCase(), control = event.ctrlKey || event.metaKey;
+    const arrow = {ARROWLEFT: [-1, 0, 0], ARROWRIGHT: [1, 0, 0], ARROWUP: [0, 0, -1], ARROWDOWN: [0, 0, 1]}[key];
+    if (arrow && this.page.plan.on && this.entry?.middles.length > 0) {
+      const to = add(this.middleOf(this.entry), scaled(arrow, this.step || planStep));
+      this.edit({position: positionInWorld(to)});
+      return;
+    }
     const act = control ? {D: () => this.edit({duplicate: true})}[key] : {
       B: () => this.setPlaces(!this.places),
       R: () => this.edit({rotate: event.shiftKey ? -15 : 15}),

@@ -57,6 +57,7 @@ class Page {
     if (!room.live) this.errors = await archive.array('errors');
     this.surfaces = new Surfaces(this.renderer.positions, this.renderer.indices);
     this.walker = new Walker(this.surfaces);
+    this.plan = new Plan(this);
     this.panel = new Panel(this.lights, (what, holds) => this.changed(what, holds));
     this.points = new Points(this);
     this.history = new LightHistory(this.lights, (what) => {
@@ -72,7 +73,7 @@ class Page {
     this.restore();
     this.history.settle();
     this.panel.show();
-    listen(this.walker, this.canvas, find('#pad'), () => this.wake(), (x, y) => this.click(x, y));
+    listen(this.walker, () => this.view, this.canvas, find('#pad'), () => this.wake(), (x, y) => this.click(x, y));
     window.addEventListener('resize', () => this.wake());
     window.addEventListener('hashchange', () => this.restore());
     window.addEventListener('gamepadconnected', () => this.wake());
@@ -84,9 +85,13 @@ class Page {
     this.canvas.focus({preventScroll: true});
   }
 
+  /// What is drawn, and what pointers move.
+  get view() { return this.plan.on ? this.plan : this.walker; }
+
   /// Goes on as the page before was left.
   resume() {
     this.setMode(kept.mode);
+    if (kept.plan) this.plan.open(kept.plan);
     this.panel.unfold(!kept.folded);
     this.setPace(kept.pace);
     find('#follow').checked = kept.follows;
@@ -139,7 +144,7 @@ class Page {
   /// it: the uppermost 2% are beyond, and steps have round middles.
   setScale() {
     const {falseColours} = this.renderer, steps = room.legendSteps;
-    const lux = this.renderer.seenLux(this.walker).filter((value) => value > 0).sort((a, b) => a - b);
+    const lux = this.renderer.seenLux(this.view).filter((value) => value > 0).sort((a, b) => a - b);
     const step = (lux[lux.length - 1 - Math.floor(0.02 * lux.length)] ?? 1) / steps;
     const decade = 10 ** Math.floor(Math.log10(step));
     const round = [1, 1.2, 1.6, 2, 3, 4, 6, 8, 10].find((part) => part * decade >= step * 0.999) * decade;
@@ -188,12 +193,13 @@ class Page {
     const began = performance.now();
     this.scheduled = false;
     const since = time - this.lastTime, passed = clamp(since / 1000, 0, 0.1);
-    const moved = this.walker.advance(passed), mixed = this.lightIsOld;
+    const moved = this.view.advance(passed), mixed = this.lightIsOld;
     this.lastTime = time;
     this.mixLight();
     const fades = this.live?.advance(since / 1000);
     if (moved || fades || this.dirty) {
-      this.renderer.draw(this.walker);
+      this.renderer.draw(this.view);
+      if (this.plan.on) this.plan.draw();
       this.points.place();
       this.live?.look();
     }
@@ -230,13 +236,14 @@ class Page {
     const list = find('#bookmarks');
     room.cameras.forEach((camera, i) => {
       const button = element('button', {type: 'button', textContent: camera.name});
-      button.addEventListener('click', () => this.view(i));
+      button.addEventListener('click', () => this.stand(i));
       list.append(button);
     });
   }
 
-  view(i) {
+  stand(i) {
     if (!room.cameras[i]) return;
+    this.plan.close();
     this.walker.stand(room.cameras[i]);
     this.wake();
   }
@@ -282,6 +289,7 @@ class Page {
         find('#fly').setAttribute('aria-pressed', this.walker.flies);
         this.wake();
       }],
+      T: ['#plan', () => (this.plan.on ? this.plan.close() : this.plan.open())],
       P: ['#picture', () => this.save()],
       C: ['#link', () => this.share()],
       H: ['#help', () => {
@@ -305,7 +313,7 @@ class Page {
         find('#panel').hidden = !find('#panel').hidden;
       } else if (this.panel.takeHourKey(event)) event.preventDefault();
       else if (tools[key]) tools[key][1]();
-      else if (/^[1-9]$/.test(key)) this.view(Number(key) - 1);
+      else if (/^[1-9]$/.test(key)) this.stand(Number(key) - 1);
       else if (key === 'ESCAPE') this.points.close();
     });
     const {used, texel} = room.atlas;
@@ -332,7 +340,7 @@ class Page {
 
   /// From the eye to a place of the page.
   directionTo(x, y) {
-    const {forward, right, angle} = this.walker;
+    const {forward, right, angle} = this.view;
     const up = cross(right, forward), tangent = Math.tan(angle / 2);
     const aspect = this.canvas.clientWidth / this.canvas.clientHeight;
     return normalized(add(forward, add(
@@ -342,12 +350,12 @@ class Page {
 
   /// The triangle at a place of the page.
   meet(x, y) {
-    const {eye} = this.walker, direction = this.directionTo(x, y);
+    const direction = this.directionTo(x, y), eye = add(this.view.eye, scaled(direction, this.view.near ?? 0));
     const hit = this.surfaces.meet(eye, direction, (triangle, facing) => {
       const part = this.partOf(triangle);
       return !part.clear && (part.interaction === 1 || facing < 0);
     });
-    return hit && {...hit, place: add(eye, scaled(direction, hit.distance))};
+    return hit && {...hit, eye, place: add(eye, scaled(direction, hit.distance))};
   }
 
   partOf(triangle) {
@@ -385,7 +393,7 @@ class Page {
 
   /// Where the page shows a point; null where it lies behind the eye.
   placeOf(point) {
-    const {forward, right, eye, angle} = this.walker;
+    const {forward, right, eye, angle} = this.view;
     const offset = subtract(point, eye), depth = dot(offset, forward);
     if (!(depth > 1e-6)) return null;
     const {clientWidth: width, clientHeight: height} = this.canvas;
@@ -395,7 +403,7 @@ class Page {
 
   save() {
     this.renderer.share = 1;
-    this.renderer.draw(this.walker);
+    this.renderer.draw(this.view);
     this.canvas.toBlob((blob) => {
       saveFile(`${room.title}.png`, blob);
       tell('The picture is saved.');

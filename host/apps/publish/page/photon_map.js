@@ -42,6 +42,7 @@ class PhotonMap {
   turn(on) {
     const {renderer, page} = this.live;
     this.on = on;
+    if (on) page.plan.close();
     this.toggle.setAttribute('aria-pressed', on);
     this.legend.hidden = !on;
     this.legend.replaceChildren(element('li', {textContent: 'Click a surface.'}));

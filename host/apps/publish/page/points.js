@@ -25,10 +25,11 @@ class Points {
     this.factor = find('#maintenance');
     this.target = find('#target');
     this.ownTarget = find('#lux');
-    this.target.append(
-        ...[['none', 0], ...room.targets.map(({name, lux}) => [`${name}, ${lux} lx`, lux])].map(
-            ([textContent, value]) => element('option', {textContent, value})),
-        element('option', {textContent: 'other', value: ''}));
+    const option = (textContent, value, title = '') => element('option', {textContent, value, title});
+    const areas = [...new Set(room.targets.map(({area}) => area))];
+    this.target.append(option('no target', 0), option('another target', ''), ...areas.map((label) => element(
+        'optgroup', {label}, ...room.targets.filter(({area}) => area === label).map(
+            ({name, what, lux}) => option(`${lux} lx ${name.replaceAll('-', ' ')}`, lux, what)))));
     for (const field of [this.factor, this.target, this.ownTarget]) {
       field.addEventListener('input', () => {
         this.ownTarget.hidden = this.target.value !== '';
@@ -50,7 +51,7 @@ class Points {
     const [a, b, c] = this.page.surfaces.corners(hit.triangle);
     const normal = normalized(cross(subtract(b, a), subtract(c, a)));
     const point = {number, hit, normal, place: add(hit.place, scaled(normal, sensorHeight)), repeats: [],
-                   eye: this.page.walker.eye.slice()};
+                   eye: (hit.eye ?? this.page.walker.eye).slice()};
     point.ring = element('i', {textContent: number});
     const open = element('button', {type: 'button', className: 'ring', textContent: number,
                                     title: 'Show in the picture'});
@@ -144,6 +145,7 @@ class Points {
       box.style.visibility = x > 0 && x < width && y > 0 && y < height ? '' : 'hidden';
       box.style.left = `${x}px`;
       box.style.top = `${y}px`;
+      box.classList.toggle('left', x > width / 2);  // of its point, where the page has room
     };
     for (const point of this.all) put(point.ring, point);
     if (this.opened) put(find('#reading'), this.opened);

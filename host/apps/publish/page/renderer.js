@@ -416,8 +416,8 @@ class Renderer {
   }
 
   /// Draws into the bound framebuffer.
-  ///   camera   {eye, right, up, forward, projection}
-  drawView({eye, right, up, forward, projection}, mode) {
+  ///   camera   {eye, right, up, forward, projection, isPlan}
+  drawView({eye, right, up, forward, projection, isPlan}, mode) {
     const gl = this.gl;
     gl.enable(gl.DEPTH_TEST);
     gl.depthMask(true);
@@ -461,7 +461,7 @@ class Renderer {
       }
     };
     drawParts(false, [0]);
-    this.drawSky(right, up, forward, projection, mode);
+    if (!isPlan) this.drawSky(right, up, forward, projection, mode);
     // Lux are those behind glass.
     if (mode !== 2 && room.parts.some((part) => part.clear)) {
       gl.useProgram(room_.program);
@@ -548,10 +548,11 @@ class Renderer {
 
   get far() { return 4 * Math.hypot(...subtract(room.high, room.low)) + 10; }
 
-  cameraOf(walker, aspect) {
-    const forward = walker.forward, right = walker.right;
-    return {eye: walker.eye, right, up: cross(right, forward), forward,
-            projection: perspective(walker.angle, aspect, 0.03, this.far)};
+  ///   view   a Walker or a Plan
+  cameraOf(view, aspect) {
+    const {eye, forward, right, isPlan, near = 0.03, far = this.far} = view;
+    return {eye, right, up: cross(right, forward), forward, isPlan,
+            projection: perspective(view.angle, aspect, near, far)};
   }
 
   /// Pixels of the page that the canvas takes, across and down.
@@ -571,12 +572,14 @@ class Renderer {
     }
   }
 
-  draw(walker) {
+  ///   view   a Walker or a Plan, which the exact picture is not of, nor what is drawn over it
+  draw(view) {
     this.drawCalls = 0;
     this.updateProbe();
     this.fit();
-    const {width, height} = this.canvas, {screen, falseColours: {contours, top}, rest} = this;
-    const camera = this.cameraOf(walker, width / height), showsLux = this.mode === 2;
+    const {width, height} = this.canvas, {screen, falseColours: {contours, top}} = this;
+    const camera = this.cameraOf(view, width / height), showsLux = this.mode === 2;
+    const rest = camera.isPlan ? null : this.rest;
     const drawInto = (target, mode) => {
       screen.begin(width, height, this.share === 1);
       this.drawView(camera, mode);
@@ -589,7 +592,7 @@ class Renderer {
     screen.fit(width, height, this.share === 1);
     screen.show(this.exposure, rest,
                 showsLux ? {contours, lux: room.lux * this.unit / top, palette: this.palette} : null);
-    for (const draw of this.overlays) draw(camera);
+    if (!camera.isPlan) this.overlays.forEach((draw) => draw(camera));
     ++this.drawCalls;
     [this.texelsRead, this.texels] = [this.texels, 0];
   }

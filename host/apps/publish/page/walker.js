@@ -56,6 +56,20 @@ class Walker {
     return hit ? place[1] - hit.distance : null;
   }
 
+  // As pointers move it (listen): pixels, and the place of the page.
+
+  drag(across, down, height) {
+    const radians = this.angle / height;
+    this.turn(-across * radians, down * radians);
+  }
+  /// Two fingers walk.
+  dragTwo(across, down, spread, x, y, height) {
+    const metres = 2.5 / height, level = [Math.sin(this.yaw), 0, -Math.cos(this.yaw)];
+    this.move(add(scaled(this.right, -across * metres),
+                  scaled(this.flies ? this.forward : level, down * metres)), 0.05);
+  }
+  zoom(factor) { this.angle = clamp(this.angle * factor, 0.25, 1.9); }
+
   /// Moves on by what is pressed. Returns whether anything has changed.
   advance(seconds) {
     const before = [...this.eye, this.yaw, this.pitch].join();
@@ -155,8 +169,9 @@ class Walker {
 }
 
 /// Keys, mouse, fingers and the pad on the screen.
+///   view()          what the page shows: a Walker or a Plan
 ///   pointed(x, y)   a click or a tap, pixels of the page
-function listen(walker, canvas, pad, changed, pointed) {
+function listen(walker, view, canvas, pad, changed, pointed) {
   const typing = (event) => event.target.matches?.('input, select, textarea, button, summary, dialog *');
   window.addEventListener('keydown', (event) => {
     if (typing(event) || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -188,15 +203,16 @@ function listen(walker, canvas, pad, changed, pointed) {
     const moved = [event.clientX - before[0], event.clientY - before[1]];
     fingers.set(event.pointerId, [event.clientX, event.clientY]);
     travelled += Math.hypot(...moved);
-    if (fingers.size === 1) {
-      const radians = walker.angle / canvas.clientHeight;
-      if (pivot) walker.orbit(pivot, -moved[0] * walking.orbit, moved[1] * walking.orbit);
-      else walker.turn(-moved[0] * radians, moved[1] * radians);
-    } else {  // two fingers walk
-      const metres = 2.5 / canvas.clientHeight;
-      const level = [Math.sin(walker.yaw), 0, -Math.cos(walker.yaw)];
-      walker.move(add(scaled(walker.right, -moved[0] * metres),
-                      scaled(walker.flies ? walker.forward : level, moved[1] * metres)), 0.05);
+    const {clientHeight} = canvas;
+    if (fingers.size > 1) {
+      const [other] = [...fingers].filter(([id]) => id !== event.pointerId).map(([, place]) => place);
+      const apart = ([x, y]) => Math.max(1, Math.hypot(x - other[0], y - other[1]));
+      const spread = apart([event.clientX, event.clientY]) / apart(before);
+      view().dragTwo(...moved, spread, event.clientX, event.clientY, clientHeight);
+    } else if (pivot) {
+      view().orbit(pivot, -moved[0] * walking.orbit, moved[1] * walking.orbit);
+    } else {
+      view().drag(...moved, clientHeight);
     }
     changed();
   });
@@ -213,7 +229,7 @@ function listen(walker, canvas, pad, changed, pointed) {
   canvas.addEventListener('wheel', (event) => {
     if (event.ctrlKey) return;  // the browser zooms
     event.preventDefault();
-    walker.angle = clamp(walker.angle * Math.exp(event.deltaY * 0.0008), 0.25, 1.9);
+    view().zoom(Math.exp(event.deltaY * 0.0008), event.clientX, event.clientY);
     changed();
   }, {passive: false});
 
