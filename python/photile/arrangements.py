@@ -45,6 +45,15 @@ def _cells_of(plane: dict[str, Any]) -> NDArray[np.bool_]:
     return cells
 
 
+def _at(cells: NDArray[np.bool_], plan: Floats) -> NDArray[np.bool_]:
+    """What cells have at positions (..., 2), counted in cells; nothing beyond them."""
+    rows, columns = cells.shape
+    x, y = np.moveaxis(np.floor(plan).astype(int), -1, 0)
+    inside = (x >= 0) & (y >= 0) & (x < columns) & (y < rows)
+    held: NDArray[np.bool_] = inside & cells[y.clip(0, rows - 1), x.clip(0, columns - 1)]
+    return held
+
+
 @dataclass(frozen=True)
 class Room:
     """A room as ``photile measure`` finds it.
@@ -64,9 +73,8 @@ class Room:
         Sides of a cell of the floor, metres.
     floor : (rows, columns) array
         Whether a cell is floor, with furniture on it or not.
-    clear : (rows, columns) array
-        Whether nothing is in the way of a luminaire: no tall furniture, no beam. Its cells may be
-        smaller.
+    clear : sequence of planes
+        At the heights of luminaires, where nothing is in their way: no tall furniture, beam or slope.
     walls : (k, 2, 2) array
         Both ends of the walls at the height of the working plane, on the plan.
     """
@@ -79,7 +87,7 @@ class Room:
     cell: Floats
     floor: NDArray[np.bool_]
     walls: Floats
-    clear: NDArray[np.bool_]
+    clear: Sequence[dict[str, Any]] = ()
 
     @classmethod
     def of(cls, record: dict[str, Any]) -> Room:
@@ -102,14 +110,11 @@ class Room:
             corners = [[float(x) for x in corner.split()] for corner in line.split("L")]
             walls += zip(corners, corners[1:])
         return cls(origin, axes, floor_height, floor_height + record["room"]["height"],
-                   record["room"]["area"], cell, floor, np.array(walls, float).reshape(-1, 2, 2),
-                   np.ones((1, 1), bool))
+                   record["room"]["area"], cell, floor, np.array(walls, float).reshape(-1, 2, 2))
 
     def with_obstacles(self, record: dict[str, Any]) -> Room:
-        """With what is in the way at the heights of the planes of these results, which are those of
-        the same floor."""
-        return replace(self, clear=np.logical_and.reduce([_cells_of(grid["plane"])
-                                                          for grid in record["grids"]]))
+        """With what is in the way at the heights of the planes of these results."""
+        return replace(self, clear=[grid["plane"] for grid in record["grids"]])
 
     def spacing(self, cells: int) -> float:
         """Metres that make so many cells along the longer side."""
@@ -120,22 +125,19 @@ class Room:
         point = self.origin + np.array([*plan, height]) @ self.axes
         return [round(float(x), 4) for x in point]
 
-    def _at(self, cells: NDArray[np.bool_], plan: Floats) -> NDArray[np.bool_]:
-        """What cells of the rectangle around the floor have at positions (..., 2) on the plan."""
-        rows, columns = cells.shape
-        cell = self.cell * self.floor.shape[::-1] / (columns, rows)
-        x, y = np.moveaxis(np.floor(plan / cell).astype(int), -1, 0)
-        inside = (x >= 0) & (y >= 0) & (x < columns) & (y < rows)
-        held: NDArray[np.bool_] = inside & cells[y.clip(0, rows - 1), x.clip(0, columns - 1)]
-        return held
-
     def holds(self, plan: Floats) -> NDArray[np.bool_]:
         """Whether there is floor at positions (..., 2) on the plan."""
-        return self._at(self.floor, plan)
+        return _at(self.floor, plan / self.cell)
 
     def is_clear(self, plan: Floats) -> NDArray[np.bool_]:
-        """Whether there is floor, and a luminaire is free of furniture."""
-        return self.holds(plan) & self._at(self.clear, plan)
+        """Whether there is floor, and a luminaire is free of furniture and below the roof."""
+        clear = self.holds(plan)
+        for plane in self.clear:
+            cells = _cells_of(plane)
+            corner = self.axes[:2] @ (np.array(plane["origin"]) - self.origin)
+            sides = np.linalg.norm([plane["u"], plane["v"]], axis=1) / cells.shape[::-1]
+            clear &= _at(cells, (plan - corner) / sides)
+        return clear
 
     def wall_angle(self) -> float:
         """Radians, -pi/4 to pi/4, that the longest of the walls is turned on the plan, or a wall

@@ -48,7 +48,13 @@ def room_of(corners, to_wall=None):
     floor = to_wall(low + cell * (pairs(columns, rows) + 0.5)).reshape(columns, rows).T > 0
     walls = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1) - low
     return Room(np.array([low[0], 0.75, -low[1]]), np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
-                -0.75, 2.25, 30.0, np.array([cell, cell]), floor, walls, np.ones((1, 1), bool))
+                -0.75, 2.25, 30.0, np.array([cell, cell]), floor, walls)
+
+
+def test_luminaires_hang_below_slopes():
+    plane = {"origin": [2, 1.8, 0], "u": [2, 0, 0], "v": [0, 0, -6], "columns": 2, "rows": 1, "cells": [0, 1]}
+    room = room_of(SQUARE).with_obstacles({"grids": [{"plane": plane}, {"plane": plane | {"cells": [1]}}]})
+    assert list(room.is_clear(np.array([[1.9, 3], [2.1, 3], [3.1, 3], [3.9, 3], [4.1, 3]]))) == [0, 0, 1, 1, 0]
 
 
 def middles(entries):
