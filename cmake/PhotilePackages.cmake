@@ -68,7 +68,7 @@ if(TARGET photile_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   math(EXPR _next "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-    "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${_next}), python3-numpy")
+    "photile, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${_next}), python3-numpy")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd, photile-openimageio")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION
     "photon mapping on OpenCL devices (Python)\n Scenes, photons, photon maps, pictures and lux as arrays of numpy.")

@@ -1,9 +1,8 @@
 """What photile's converters of other programs' files (``from_gldf``, ``from_honeybee``, ``from_ifc``)
-share: glTF, names, the turn of luminaires, files that appear whole, and errors."""
+share: glTF, names, the turn of luminaires, files that appear whole, and processes of their own."""
 
 from __future__ import annotations
 
-import base64
 import contextlib
 import json
 import math
@@ -14,25 +13,45 @@ import struct
 import sys
 import tempfile
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .errors import InputError, OutputError, UsageError
+from .errors import OutputError
 from .report.command import permissions
 
-__all__ = ["Gltf", "exit_code", "in_child", "luminaire_rotation", "matt", "one_line", "unique",
-           "write_files"]
+__all__ = ["Conversion", "Gltf", "in_child", "in_scene", "json_lines", "luminaire_rotation", "matt", "unique",
+           "write_files", "y_up"]
 
 _float, _index = 5126, 5125  # glTF's numbers of component types
 _json_chunk, _binary_chunk = b"JSON", b"BIN\0"
 
 
-def one_line(text: Any) -> str:
-    """A text of a stranger's file without line breaks and control characters."""
-    return " ".join("".join(c if c.isprintable() else " " for c in str(text)).split())
+# In scenes y points up, in buildings z.
+y_up = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
+
+
+def in_scene(point: ArrayLike) -> list[float]:
+    """Of a point or direction whose z points up."""
+    return [round(float(value), 6) + 0.0 for value in y_up[:3, :3] @ np.asarray(point, float)]
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """What was done."""
+
+    commands: list[list[str]]  # words of those that measure what was written, or of an option
+    summary: list[str] = field(default_factory=list)  # lines about what was written
+    warnings: list[str] = field(default_factory=list)  # lines about what was left out
+
+
+def json_lines(entries: list[dict[str, Any]]) -> bytes:
+    """A list with an entry a line."""
+    lines = (json.dumps(entry, ensure_ascii=False, allow_nan=False) for entry in entries)
+    return ("[" + ",\n ".join(lines) + "]\n").encode()
 
 
 def unique(name: str, taken: dict[str, int]) -> str:
@@ -114,21 +133,13 @@ class Gltf:
         siblings.append(number)
         return number
 
-    def _finished(self, buffer: dict[str, Any]) -> bytes:
-        content = {key: value for key, value in self._json.items() if value != []}
-        content["buffers"] = [{"byteLength": len(self._binary), **buffer}]
-        used = {name for material in self._json["materials"] for name in material["extensions"]}
-        content["extensionsUsed"] = sorted(used)
-        return json.dumps(content, allow_nan=False).encode()
-
-    def gltf(self) -> bytes:
-        """A ``.gltf`` that holds all."""
-        data = base64.b64encode(self._binary).decode()
-        return self._finished({"uri": f"data:application/octet-stream;base64,{data}"})
-
     def glb(self) -> bytes:
         """A ``.glb``: chunks of JSON and of numbers (glTF 2.0, section 4.4)."""
-        text = self._finished({})
+        content = {key: value for key, value in self._json.items() if value != []}
+        content["buffers"] = [{"byteLength": len(self._binary)}]
+        used = {name for material in self._json["materials"] for name in material["extensions"]}
+        content["extensionsUsed"] = sorted(used)
+        text = json.dumps(content, allow_nan=False).encode()
         chunks = [(_json_chunk, text + b" " * (-len(text) % 4)),
                   (_binary_chunk, bytes(self._binary) + b"\0" * (-len(self._binary) % 4))]
         body = b"".join(struct.pack("<I4s", len(data), kind) + data for kind, data in chunks)
@@ -173,28 +184,6 @@ def write_files(contents: Mapping[Path, bytes]) -> None:
                 os.replace(temporary, path)
             except OSError as error:
                 raise OutputError(f"{path}: not written: {error.strerror}; name another file") from None
-
-
-def exit_code(program: str, work: Callable[[], None]) -> int:
-    """Do the work of a program. Returns photile's exit code, and prints an error as one line.
-
-    program   "photile.from_ifc"
-    """
-    try:
-        work()
-        return 0
-    except UsageError as error:
-        found, code = str(error), 2
-    except InputError as error:
-        found, code = str(error), 3
-    except MemoryError:
-        found, code = "not enough memory; convert a part of the file", 1
-    except (ImportError, OSError) as error:
-        found, code = str(error), 1
-    except KeyboardInterrupt:
-        found, code = "interrupted", 130
-    print(f"{program}: error: {one_line(found)}", file=sys.stderr)
-    return code
 
 
 def in_child(work: Callable[[], int], crash: str, seconds: int = 3600) -> int:

@@ -1,5 +1,5 @@
 """Luminaires of GLDF files (Global Lighting Data Format, a zip of product.xml and photometric files):
-``python3 -m photile.from_gldf``.
+``photile import``.
 
 Element names are those of the schema 1.0.0, https://github.com/globallightingdata/gldf. A luminaire's
 shape is left out: photile's lamps are the luminous openings of their photometric files.
@@ -7,18 +7,16 @@ shape is left out: photile's lamps are the luminous openings of their photometri
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 import re
-import sys
 import xml.etree.ElementTree as xml
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from .converters import exit_code, unique, write_files
+from .converters import Conversion, unique, write_files
 from .errors import InputError, UsageError
 
 __all__ = ["convert"]
@@ -110,9 +108,9 @@ def _luminaires(gldf: Path) -> tuple[list[dict[str, Any]], dict[str, bytes]]:
     return entries, written
 
 
-def convert(gldf: Path, folder: Path) -> list[dict[str, Any]]:
+def convert(gldf: Path, folder: Path) -> Conversion:
     """Writes the photometric files of all variants and ``luminaires.json``, with an entry for each
-    of their lights, into a new or empty folder; returns the entries.
+    of their lights, into a new or empty folder.
 
     Errors: InputError where the file is not GLDF, or none of its variants has a photometric file
     in it; UsageError where the folder is not empty; OutputError.
@@ -129,24 +127,6 @@ def convert(gldf: Path, folder: Path) -> list[dict[str, Any]]:
         raise UsageError(f"{folder}: the folder is not empty; name a new one")
     written["luminaires.json"] = (json.dumps(entries, indent=2) + "\n").encode()
     write_files({folder / name: content for name, content in written.items()})
-    return entries
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(prog="python3 -m photile.from_gldf",
-                                     description="Write the photometric files and luminaires of a GLDF file.")
-    parser.add_argument("gldf", type=Path)
-    parser.add_argument("folder", type=Path, help="new folder to write to")
-    options = parser.parse_args()
-
-    def work() -> None:
-        for entry in convert(options.gldf, options.folder):
-            print(f"{entry['name']}: {entry['file']}"
-                  + (f", {entry['lumens']:g} lm" if "lumens" in entry else ""))
-        print(f"--luminaires {options.folder}/luminaires.json")
-
-    return exit_code("photile.from_gldf", work)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    summary = [f"{entry['name']}: {entry['file']}" + (f", {entry['lumens']:g} lm" if "lumens" in entry else "")
+               for entry in entries]
+    return Conversion([["--luminaires", str(folder / "luminaires.json")]], summary)

@@ -1,34 +1,32 @@
-"""Honeybee's models (HBJSON) as scenes that photile reads: ``python3 -m photile.from_honeybee``.
+"""Honeybee's models (HBJSON) as scenes that photile reads: ``photile import``.
 
-Needs honeybee-radiance of PyPI. Coordinates stay those of the model, in metres and with z upwards, so
-that files have to be read with ``--set up=z``; the line that is printed says so.
+Needs honeybee-radiance of PyPI. In models z points up, in scenes y: z becomes y, and y becomes -z.
 """
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import importlib
 import io
 import json
 import math
 import re
-import shlex
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .converters import Gltf, luminaire_rotation, matt, write_files
-from .errors import OutputError
+from .command_line import one_line
+from .converters import Conversion, Gltf, in_scene, json_lines, luminaire_rotation, matt, write_files, y_up
+from .errors import InputError, UsageError
 
 __all__ = ["convert"]
 
 _least_opening = 0.05  # metres, of a lamp whose file calls it a point
 _lumens_per_watt = 179.0  # Radiance's
 _channels = "rgb"
+_eye = 1.6  # metres above the floor
 
 
 def _colour(modifier: Any, what: str) -> list[float]:
@@ -115,14 +113,34 @@ def _gltf(model: Any, warnings: list[str]) -> bytes:
         for face in mesh.faces:
             for i in range(2, len(face)):  # Honeybee's quads are convex
                 of_modifier += [tuple(mesh.vertices[k]) for k in (face[0], face[i - 1], face[i])]
-    gltf = Gltf("photile.from_honeybee")
+    gltf = Gltf("photile import")
     for name, points in corners.items():
         material, lost = _material(modifiers[name])
         if lost:
             warnings.append(f"modifier '{name}': {lost}")
-        part = (gltf.points(points), None, gltf.material(material))
+        part = (gltf.points(np.array(points) @ y_up[:3, :3].T), None, gltf.material(material))
         gltf.node(name=name, mesh=gltf.mesh(name, [part]))
-    return gltf.gltf()
+    return gltf.glb()
+
+
+def _rooms(model: Any, warnings: list[str]) -> list[dict[str, Any]]:
+    """The list of ``rooms.json``. A floor's outline is that of the room as seen from above."""
+    rooms = []
+    for room in model.rooms:
+        try:
+            boundary = room.horizontal_boundary(tolerance=model.tolerance)
+            height, floor = room.max.z - room.min.z, room.min.z
+            widest = max(room.floors, key=lambda face: float(face.area))
+            x, y, _ = widest.geometry.pole_of_inaccessibility(model.tolerance)
+        except Exception as error:  # ladybug raises what it likes on rooms that are not closed
+            warnings.append(f"room '{room.display_name}': it is not listed: {one_line(error) or 'it has no floor'}")
+            continue
+        outline, *holes = ([in_scene([corner.x, corner.y, floor]) for corner in ring]
+                           for ring in (boundary.boundary, *(boundary.holes or ())))
+        rooms.append({"name": one_line(room.display_name), "storey": one_line(room.story or ""),
+                      "area": round(room.floor_area, 4), "height": round(height, 4), "floor": round(floor, 4),
+                      "inside": in_scene([x, y, floor + min(_eye, height / 2)]), "outline": outline, "holes": holes})
+    return rooms
 
 
 def _add(files: dict[str, bytes], name: str, text: str) -> None:
@@ -131,8 +149,8 @@ def _add(files: dict[str, bytes], name: str, text: str) -> None:
     files[name] = text.encode()
 
 
-def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], dict[str, bytes]]:
-    """The list that ``--luminaires`` takes, and photometric files by name."""
+def _luminaires(model: Any, stem: str, warnings: list[str]) -> tuple[list[dict[str, Any]], dict[str, bytes]]:
+    """The list that ``--luminaires`` takes, and photometric files by name, which begins with a stem."""
     entries: list[dict[str, Any]] = []
     files: dict[str, bytes] = {}
     for lamp in model.properties.radiance.luminaires:
@@ -150,13 +168,13 @@ def _luminaires(model: Any, warnings: list[str]) -> tuple[list[dict[str, Any]], 
             else:
                 warnings.append(f"luminaire '{name}': its factor of {factor:g} is left out "
                                 "because its file has a TILT")
-        _add(files, f"{name}.ies", text)
+        file = f"{stem}.{name}.ies"
+        _add(files, file, text)
         small = max(lamp.width_m, lamp.length_m) == 0 == min(lamp.width_m, lamp.length_m)
         for number, instance in enumerate(lamp.luminaire_zone or ()):
-            entry = {"name": f"{name}_{number + 1}", "file": f"{name}.ies",
-                     "position": list(instance.point), "aim": list(instance.g0_axis),
-                     "rotation": luminaire_rotation(tuple(instance.c0_axis), tuple(instance.g0_axis),
-                                                    (0, 0, 1))}
+            position, c0, aim = map(in_scene, (instance.point, instance.c0_axis, instance.g0_axis))
+            entry = {"name": f"{name}_{number + 1}", "file": file, "position": position, "aim": aim,
+                     "rotation": round(luminaire_rotation(c0, aim, (0, 1, 0)), 4)}
             if small:
                 entry["size"] = [_least_opening, _least_opening]
             entries.append(entry)
@@ -186,70 +204,58 @@ def _read(file: Path, warnings: list[str]) -> Any:
             part["ies_path"] = None  # its content is in the model
         return part
 
-    data = json.loads(file.read_text(encoding="utf-8-sig"), object_hook=harmless,
-                      parse_float=_finite, parse_constant=_finite)
+    try:
+        text = file.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise ValueError(error.strerror) from None
+    data = json.loads(text, object_hook=harmless, parse_float=_finite, parse_constant=_finite)
     importlib.import_module("honeybee_radiance")  # adds what models know of light
     return importlib.import_module("honeybee.model").Model.from_dict(data)
 
 
-def convert(file: Path, folder: Path) -> tuple[list[str], list[str]]:
-    """Write a model as a scene, its grids of sensors and its luminaires.
+def _files(model: Any, scene: Path, warnings: list[str]) -> tuple[dict[str, bytes], list[str]]:
+    """By their names beside the scene, and the words of the command that measures."""
+    files = {scene.name: _gltf(model, warnings)}
+    command = ["photile", "measure", str(scene)]
+    if rooms := _rooms(model, warnings):
+        files[f"{scene.stem}.rooms.json"] = json_lines(rooms)
+    entries, photometry = _luminaires(model, scene.stem, warnings)
+    if entries:
+        files |= {**photometry, f"{scene.stem}.luminaires.json": json_lines(entries)}
+        command += ["--luminaires", str(scene.with_suffix(".luminaires.json"))]
+    for grid in model.properties.radiance.sensor_grids:
+        name = f"{scene.stem}.grids/{grid.identifier}.pts"
+        _add(files, name, "".join(" ".join(f"{x:.9g}" for x in [*in_scene(sensor.pos), *in_scene(sensor.dir)]) + "\n"
+                                  for sensor in grid.sensors))
+        command += ["--points", str(scene.parent / name)]
+    return files, [*command, "--honeybee", str(scene.with_suffix(".results"))]
+
+
+def convert(file: Path, scene: Path) -> Conversion:
+    """Write a model as a scene, its rooms, grids of sensors and luminaires.
 
     Parameters
     ----------
     file : path
         HBJSON of a Model.
-    folder : path
-        Gets ``scene.gltf``, a ``.pts`` for each grid, ``luminaires.json`` and photometric files;
-        made where it is missing.
+    scene : path
+        ``.glb`` to write. ``.rooms.json``, ``.luminaires.json``, photometric files and the folder ``.grids`` of
+        the same name lie beside it where there are rooms, luminaires and grids.
 
-    Returns
-    -------
-    words of the command that measures, and lines about what was left out
+    Errors: InputError, UsageError, OutputError, ImportError.
     """
+    if scene.suffix.lower() != ".glb":
+        raise UsageError(f"{scene}: name a .glb file to write")
     warnings: list[str] = []
-    model = _read(file, warnings)
-    model.convert_to_units("Meters")
-    files = {"scene.gltf": _gltf(model, warnings)}
-    command = ["photile", "measure", str(folder / "scene.gltf"), "--set", "up=z"]
-    entries, photometry = _luminaires(model, warnings)
-    if entries:
-        files.update(photometry)
-        _add(files, "luminaires.json", json.dumps(entries, indent=1, allow_nan=False))
-        command += ["--luminaires", str(folder / "luminaires.json")]
-    for grid in model.properties.radiance.sensor_grids:
-        _add(files, f"{grid.identifier}.pts", grid.to_radiance() + "\n")
-        command += ["--points", str(folder / f"{grid.identifier}.pts")]
-    write_files({folder / name: content for name, content in files.items()})
-    return [*command, "--honeybee", str(folder / "results")], warnings
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(
-        prog="python3 -m photile.from_honeybee",
-        description="Write a Honeybee model as a scene, and print the command that measures it.")
-    parser.add_argument("model", type=Path, help="HBJSON file")
-    parser.add_argument("folder", type=Path, help="folder to write to")
-    options = parser.parse_args()
     try:
         # Honeybee prints what goes wrong, with its stack, before it raises it.
         with contextlib.redirect_stderr(io.StringIO()), contextlib.redirect_stdout(io.StringIO()):
-            command, warnings = convert(options.model, options.folder)
-    except ImportError as missing:
-        print(f"error: {missing}; pip install honeybee-radiance", file=sys.stderr)
-        return 1
-    except OutputError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
+            model = _read(file, warnings)
+            model.convert_to_units("Meters")
+            files, command = _files(model, scene, warnings)
+    except ImportError:
+        raise
     except Exception as error:  # Honeybee raises what it likes on malformed files
-        print(f"error: {options.model}: {' '.join(str(error).split())};"
-              " give an HBJSON file of a whole model", file=sys.stderr)
-        return 3
-    for line in warnings:
-        print(f"warning: {line}", file=sys.stderr)
-    print(shlex.join(command))
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        raise InputError(f"{file}: {one_line(error)}; give an HBJSON file of a whole model") from None
+    write_files({scene.parent / name: content for name, content in files.items()})
+    return Conversion([command], [], warnings)

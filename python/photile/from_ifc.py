@@ -1,53 +1,30 @@
-"""Buildings of IFC as scenes that photile reads: ``python3 -m photile.from_ifc``.
+"""Buildings of IFC as scenes that photile reads: ``photile import``.
 
 Needs ifcopenshell of PyPI, 0.8 or 0.9.
 """
 
 from __future__ import annotations
 
-import argparse
 import csv
 import fnmatch
 import io
-import json
 import re
-import shlex
-import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .converters import exit_code, luminaire_rotation, one_line, unique, write_files
+from .command_line import one_line
+from .converters import Conversion, in_scene, json_lines, luminaire_rotation, unique, write_files
 from .errors import InputError, UsageError
-from .ifc_building import (
-    Building,
-    Fixture,
-    Room,
-    in_ifc_child,
-    in_scene,
-    number_of,
-    read,
-    wall_bands,
-    working_plane,
-)
+from .ifc_building import Building, Fixture, Room, number_of, read, wall_bands, working_plane
 
-__all__ = ["Conversion", "convert"]
+__all__ = ["convert"]
 
 _most_photometry = 64 << 20  # bytes of a photometric file, as in limits.hpp
 _view = 60.0  # degrees from the top to the bottom of a room's picture
 _most_lights = 8  # that tables of all rooms show apart; more are one group in the command
-
-
-@dataclass(frozen=True)
-class Conversion:
-    """What was done."""
-
-    commands: list[list[str]]  # words of those that measure all rooms, and that rate the glare of the sky
-    summary: list[str]  # lines about what was written
-    warnings: list[str]  # lines about what was left out
 
 
 def _fits(text: str, pattern: str) -> bool:
@@ -204,11 +181,6 @@ def _grid(room: Room, targets: Sequence[tuple[str, str]]) -> dict[str, Any]:
     return room.grid() | ({"target": own[-1]} if own else {})
 
 
-def _json_lines(entries: list[dict[str, Any]]) -> bytes:
-    lines = (json.dumps(entry, ensure_ascii=False, allow_nan=False) for entry in entries)
-    return ("[" + ",\n ".join(lines) + "]\n").encode()
-
-
 def _summary(building: Building, chosen: list[Room], lit: int) -> list[str]:
     lines = [f"rooms: {len(chosen)} of {len(building.rooms)}"]
     doubtful = [f"{room.name} ({room.doubt})" for room in building.rooms if room.doubt and room not in chosen]
@@ -274,11 +246,11 @@ def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[st
 
     places, report = ["--plane", f"floor+{working_plane}"], []
     if chosen:
-        places = ["--grid", beside(".grids.json", _json_lines([_grid(room, targets) for room in chosen]))]
-        report = ["--include", beside(".rooms.json", _json_lines([room.record() for room in chosen]))]
+        places = ["--grid", beside(".grids.json", json_lines([_grid(room, targets) for room in chosen]))]
+        report = ["--include", beside(".rooms.json", json_lines([room.record() for room in chosen]))]
     if building.fixtures:
         beside(".luminaires.csv", _schedule(building.fixtures))
-    light = (["--luminaires", beside(".luminaires.json", _json_lines(luminaires))] if luminaires
+    light = (["--luminaires", beside(".luminaires.json", json_lines(luminaires))] if luminaires
              else ["--sky", "overcast=10000"])
     if building.north:
         light += ["--set", f"north={building.north:g}"]
@@ -297,54 +269,3 @@ def convert(files: list[Path], scene: Path, rooms: list[str], ies: list[tuple[st
             raise UsageError(f"{path}: this file is read; name another one to write")
     write_files(outputs)
     return Conversion(commands, _summary(building, chosen, len(luminaires)), building.warnings)
-
-
-def _profile(text: str) -> tuple[str, Path]:
-    pattern, _, file = text.partition("=")
-    if not pattern or not file:
-        raise argparse.ArgumentTypeError(f"'{text}': use TYPE=FILE, fixtures and an .ies or .ldt file")
-    return pattern, Path(file)
-
-
-def _target(text: str) -> tuple[str, str]:
-    pattern, _, target = text.partition("=")
-    if not pattern or not target:
-        raise argparse.ArgumentTypeError(f"'{text}': use GLOB=TARGET, rooms and what photile measure --target takes")
-    return pattern, target
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(
-        prog="python3 -m photile.from_ifc",
-        description="Write a building of IFC as a scene with its rooms and light fixtures, and print the "
-                    "command that measures all rooms.")
-    parser.add_argument("ifc", type=Path, nargs="+",
-                        help="IFC file; several that share their coordinates, such as those of "
-                             "architecture and electrical engineering")
-    parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE.glb",
-                        help="scene to write; files of rooms and fixtures lie beside it")
-    parser.add_argument("--rooms", action="append", default=[], metavar="GLOB",
-                        help="rooms by number or name; repeatable; default: all but those without a ceiling "
-                             "and those below 1.2 m")
-    parser.add_argument("--ies", action="append", default=[], type=_profile, metavar="TYPE=FILE",
-                        help="photometric file (.ies, .ldt) of the fixtures whose type fits a pattern; "
-                             "repeatable")
-    parser.add_argument("--target", action="append", default=[], type=_target, metavar="GLOB=TARGET",
-                        help="target of rooms by number or name, such as Office*=office-desk; repeatable, the last "
-                             "that fits counts")
-    parser.add_argument("--observers", action="store_true",
-                        help="write four observers of each room, too, whose glare the printed command rates")
-    options = parser.parse_args()
-
-    def work() -> None:
-        done = convert(options.ifc, options.output, options.rooms, options.ies, options.observers,
-                       options.target)
-        for line in [*(f"warning: {line}" for line in dict.fromkeys(done.warnings)), *done.summary]:
-            print(line, file=sys.stderr)
-        print("\n".join(map(shlex.join, done.commands)))
-
-    return in_ifc_child("photile.from_ifc", options.ifc, lambda: exit_code("photile.from_ifc", work))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

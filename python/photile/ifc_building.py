@@ -22,12 +22,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from .converters import Gltf, in_child, matt, one_line, unique
+from .command_line import one_line
+from .converters import Gltf, in_child, in_scene, matt, unique, y_up
 from .errors import InputError
 
-__all__ = ["Building", "Fixture", "Room", "ifc_module", "in_ifc_child", "in_scene", "most_above_ceiling",
+__all__ = ["Building", "Fixture", "Room", "ifc_module", "in_ifc_child", "most_above_ceiling",
            "number_of", "open_ifc", "read", "wall_bands", "working_plane"]
 
 # A file of a stranger may ask for more than a machine has.
@@ -58,14 +59,7 @@ _lumens = ("LuminousFlux", "Luminous Flux", "TotalLuminousFlux", "ContributedLum
 _watts = ("TotalWattage", "Wattage", "LightEmitterNominalPower", "NominalPower")
 _far = 1000.0  # metres from its origin at which a float no longer tells apart 0.1 mm
 
-_y_up = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
-
 Vector = NDArray[np.float64]
-
-
-def in_scene(point: ArrayLike) -> list[float]:
-    """Of a point or direction of IFC, with z upwards."""
-    return [round(float(value), 6) + 0.0 for value in _y_up[:3, :3] @ np.asarray(point, float)]
 
 
 @dataclass(frozen=True)
@@ -151,7 +145,7 @@ class Room:
         eye = [*(self.task.origin + across / 2), self.floor + min(_eye, 0.7 * self.height)]
         matrix = np.eye(4)
         matrix[:3] = np.transpose([np.cross(way, [0, 0, 1]), [0, 0, 1], -way, eye])
-        return [float(value) for value in (_y_up @ matrix).T.flat]
+        return [float(value) for value in (y_up @ matrix).T.flat]
 
 
 @dataclass
@@ -210,7 +204,7 @@ class Fixture:
 class Building:
     """What is read of one or several IFC files."""
 
-    gltf: Gltf = field(default_factory=lambda: Gltf("photile.from_ifc"))
+    gltf: Gltf = field(default_factory=lambda: Gltf("photile import"))
     rooms: list[Room] = field(default_factory=list)
     fixtures: list[Fixture] = field(default_factory=list)
     glass: list[str] = field(default_factory=list)  # names of materials
@@ -230,19 +224,13 @@ def _plans() -> Any:
 
 
 def ifc_module(module: str = "") -> Any:
-    """A module of ifcopenshell, ".guid". Errors: ImportError with the remedy."""
-    try:
-        return importlib.import_module(f"ifcopenshell{module}")
-    except ImportError as missing:
-        raise ImportError(f"{missing}; pip install ifcopenshell") from None
+    """A module of ifcopenshell, ".guid". Errors: ImportError."""
+    return importlib.import_module(f"ifcopenshell{module}")
 
 
-def in_ifc_child(program: str, files: list[Path], work: Callable[[], int]) -> int:
-    """Do work with IFC files in a process of its own. Returns its exit code.
-
-    program   "photile.from_ifc"
-    """
-    return in_child(work, f"{program}: error: {', '.join(map(str, files))}: ifcopenshell ended without a "
+def in_ifc_child(files: list[Path], work: Callable[[], int]) -> int:
+    """Do work with IFC files in a process of its own. Returns its exit code."""
+    return in_child(work, f"photile: error: {', '.join(map(str, files))}: ifcopenshell ended without a "
                           "result; the file is damaged, or needs more memory than there is, or an hour: "
                           "export it again, or a part of it")
 
@@ -523,7 +511,7 @@ class _Reader:
             storey = _storey(element)
             if storey not in storeys:
                 storeys[storey] = building.gltf.node(name=storey or "no storey")
-            matrix = _y_up @ placed.matrix
+            matrix = y_up @ placed.matrix
             matrix[:3, 3] += matrix[:3, :3] @ middle
             building.gltf.node(storeys[storey], name=one_line(element.Name or element.is_a()), mesh=mesh,
                                matrix=[float(value) for value in matrix.T.flat])

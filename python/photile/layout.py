@@ -1,4 +1,4 @@
-"""Layouts of luminaires that meet a target: ``python3 -m photile.layout``.
+"""Layouts of luminaires that meet a target: ``photile layout``.
 
 The number of luminaires is estimated by the lumen method (CIE 52:1982), n = E A / (Phi U MF), with
 the utilance U of the coarsest field as ``photile measure`` finds it. Fields near that number are
@@ -11,17 +11,18 @@ import argparse
 import bisect
 import json
 import math
+import os
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 
 from .arrangements import Arrangement, Designer, Room, most_luminaires
-from .errors import UsageError
+from .command_line import Parser
 from .report import command as report
 from .report.tables import targets_of
 
@@ -101,8 +102,9 @@ class _Measured:
 
 def _photile(*arguments: str) -> str:
     """Standard output of the command. Errors: Failure with the line that it prints."""
+    program = os.environ.get("PHOTILE_COMMAND", "photile")  # the command that started this names itself
     try:
-        run = subprocess.run(["photile", *arguments], stdout=subprocess.PIPE,
+        run = subprocess.run([program, *arguments], stdout=subprocess.PIPE,
                              stderr=subprocess.PIPE, encoding="utf-8", errors="replace")
     except FileNotFoundError:
         raise report.Failure(report.OUTPUT,
@@ -135,10 +137,12 @@ class _Command:
 
     def __init__(self, options: argparse.Namespace, results: Path, trial: Path) -> None:
         self._options, self.results, self._trial = options, results, trial
-        settings = _Parser(add_help=False, allow_abbrev=False)
-        settings.add_argument("--set", action="append", default=[])
-        given = settings.parse_known_args(options.measure)[0].set
-        self._settings = [word for setting in given for word in ("--set", setting)]
+        self._settings: list[str] = []
+        for option, value in zip(options.measure, [*options.measure[1:], ""]):
+            if option == "--set":
+                self._settings += [option, value]
+            elif option.startswith("--set="):
+                self._settings.append(option)
         info = json.loads(_photile("info", "--json", options.scene, *self._settings))
         self.lights = {light["name"] for light in info["lights"] + info["groups"]}
         layers = {light.get("group") or light["name"] for light in info["lights"]}
@@ -269,24 +273,16 @@ def _point(text: str) -> list[float]:
     return [x, y, z]
 
 
-class _Parser(argparse.ArgumentParser):
-    """Refuses options in one line."""
-
-    def error(self, message: str) -> NoReturn:
-        raise report.Failure(report.USAGE, f"{message}; see --help")
-
-
-def _parser() -> _Parser:
+def _parser() -> Parser:
     positive = _of_form("a number above 0", _positive)
-    parser = _Parser(
-        prog="python3 -m photile.layout", allow_abbrev=False,
-        usage="%(prog)s SCENE --luminaire FILE --target NAME -o FILE.json [OPTIONS] [-- OPTIONS]",
-        description="Place luminaires in a room: the smallest field that meets a target, or a "
-                    "given arrangement. The scene's own lights are off.",
-        epilog="Options of photile measure follow after --, such as -- --reflectance wall=0.7. "
-               "A point with a negative x is written --inside=-1,1.6,4.")
+    parser = Parser(
+        "photile layout", "SCENE --luminaire FILE --target NAME -o FILE.json [OPTIONS] [-- OPTIONS]",
+        "Place luminaires in a room: the smallest field that meets a target, or a given arrangement. "
+        "The scene's own lights are off.",
+        "Options of photile measure follow after --, such as -- --reflectance wall=0.7. "
+        "A point with a negative x is written --inside=-1,1.6,4.")
     parser.add_argument("scene", metavar="SCENE", help="scene file: .gltf, .glb or .obj")
-    add = parser.add_argument
+    add = parser.add_argument_group("Layout").add_argument
     add("--luminaire", type=Path, required=True, metavar="FILE",
         help="photometric file (.ies, .ldt), in the folder of -o or below")
     add("-o", "--output", type=Path, required=True, metavar="FILE.json",
@@ -298,11 +294,11 @@ def _parser() -> _Parser:
     add("--plane", default="floor+0.75", metavar="HEIGHT",
         help="working plane; default: floor+0.75")
     add("--inside", metavar="X,Y,Z", help="point in the room; default: the first camera's room")
-    group = parser.add_argument_group("Arrangement; by default a field is searched for")
+    group = parser.add_argument_group("Arrangement")
     add = group.add_mutually_exclusive_group().add_argument
     most = f"at most {most_luminaires} luminaires"
     add("--field", type=_of_form(f"NxM of {most}", _columns_and_rows), metavar="NxM",
-        help="N along the longest wall and M across")
+        help="N along the longest wall and M across; default: the smallest that meets the target")
     add("--line", type=_of_form(f"a number of {most}", _count), metavar="N",
         help="N along the longest wall, in the middle of the room")
     add("--circle", type=_of_form(f"N,RADIUS of {most}", _count_and_radius), metavar="N,RADIUS",
@@ -316,15 +312,14 @@ def _parser() -> _Parser:
                        help="point at which all luminaires aim; default: down")
     group.add_argument("--across", action="store_true",
                        help="C0 across the longest wall, or the radius, in place of along it")
-    add = parser.add_argument_group(
-        "Height; by default at the ceiling").add_mutually_exclusive_group().add_argument
-    add("--mounting-height", type=positive, metavar="M", help="above the floor, m")
+    add = parser.add_argument_group("Height").add_mutually_exclusive_group().add_argument
+    add("--mounting-height", type=positive, metavar="M", help="above the floor, m; default: at the ceiling")
     add("--suspension", type=positive, metavar="M", help="below the ceiling, m")
-    add = parser.add_argument_group("Luminaire; by default as in its file").add_argument
-    add("--lumens", type=positive, metavar="LM", help="flux of each")
+    add = parser.add_argument_group("Luminaire").add_argument
+    add("--lumens", type=positive, metavar="LM", help="flux of each; default: as in its file")
     add("--size", type=_of_form("LxW, two numbers above 0", _length_and_width), metavar="LxW",
-        help="luminous opening along C0 and across, m")
-    add("--name", metavar="NAME", help="name of the light")
+        help="luminous opening along C0 and across, m; default: as in its file")
+    add("--name", metavar="NAME", help="name of the light; default: that of its file")
     return parser
 
 
@@ -418,20 +413,6 @@ def _run(options: argparse.Namespace) -> int:
         return report.main([str(results), "-o", options.plan])
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    try:
-        return _run(_options(sys.argv[1:] if arguments is None else arguments))
-    except report.Failure as failure:
-        error, code = str(failure), failure.code
-    except UsageError as failure:
-        error, code = str(failure), report.USAGE
-    except OSError as failure:
-        error, code = f"{failure.filename}: {failure.strerror}", report.OUTPUT
-    except KeyboardInterrupt:
-        return 130
-    print(f"photile.layout: error: {error}".replace("\n", " "), file=sys.stderr)
-    return code
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+def main(arguments: Sequence[str]) -> int:
+    """Errors: Failure, UsageError, OSError."""
+    return _run(_options(arguments))

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from .converters import exit_code, one_line, write_files
+from .command_line import exit_code, one_line
+from .converters import write_files
 from .errors import InputError, UsageError
 from .ifc_building import ifc_module, in_ifc_child, most_above_ceiling, open_ifc
 from .report.luminaires import kind_of
@@ -152,15 +153,15 @@ def write(ifc: Path, rooms: Path, results: Path, output: Path,
     Parameters
     ----------
     ifc : path
-        The file of which ``from_ifc`` read the rooms.
+        The file of which ``photile import`` read the rooms.
     rooms : path
-        ``.rooms.json``, which ``from_ifc`` wrote.
+        ``.rooms.json``, which ``photile import`` wrote.
     results : path
-        ``.json`` of ``photile measure`` on the grids of ``from_ifc``.
+        ``.json`` of ``photile measure`` on the grids of ``photile import``.
     output : path
         ``.ifc`` to write; not one of the inputs.
     glare : path, optional
-        ``.json`` of ``photile glare`` with the observers of ``from_ifc``; by default those of the results.
+        ``.json`` of ``photile glare`` with the observers of ``photile import``; by default those of the results.
 
     Returns
     -------
@@ -184,14 +185,14 @@ def write(ifc: Path, rooms: Path, results: Path, output: Path,
                              "and --cylindrical")
     except (KeyError, TypeError, ValueError, AttributeError, ZeroDivisionError):
         files = ", ".join(str(file) for file in (rooms, results, glare) if file)
-        raise InputError(f"{files}: these are not rooms of photile.from_ifc and results of photile measure "
+        raise InputError(f"{files}: these are not rooms of photile import and results of photile measure "
                          "and glare; name the .rooms.json and the .json of -o") from None
     if not found:
-        raise InputError(f"{results}: no grid has the name of a room; measure with --grid of photile.from_ifc")
+        raise InputError(f"{results}: no grid has the name of a room; measure with --grid of photile import")
     model = open_ifc(ifc)
     spaces = {space.GlobalId: space for space in model.by_type("IfcSpace") if space.GlobalId in found}
     if not spaces:
-        raise InputError(f"{ifc}: none of these rooms is in this file; name the file of photile.from_ifc")
+        raise InputError(f"{ifc}: none of these rooms is in this file; name the file of photile import")
     properties = _Properties(model, title)
     lines, warnings = [], []
     for number, (name, one) in found.items():
@@ -211,13 +212,13 @@ def main() -> int:
         prog="python3 -m photile.to_ifc",
         description=f"Write what photile measure found in rooms into an IFC file, as the property set {_set} "
                     "of each IfcSpace, and print it beside the illuminance that the file requires.")
-    parser.add_argument("ifc", type=Path, help="IFC file of which photile.from_ifc read the rooms")
+    parser.add_argument("ifc", type=Path, help="IFC file of which photile import read the rooms")
     parser.add_argument("--rooms", type=Path, required=True, metavar="FILE.rooms.json",
-                        help="rooms that photile.from_ifc wrote")
+                        help="rooms that photile import wrote")
     parser.add_argument("--results", type=Path, required=True, metavar="FILE.json",
-                        help="what photile measure -o FILE.json wrote with the grids of photile.from_ifc")
+                        help="what photile measure -o FILE.json wrote with the grids of photile import")
     parser.add_argument("--glare", type=Path, metavar="FILE.json",
-                        help="what photile glare -o FILE.json wrote with the observers of photile.from_ifc, if the "
+                        help="what photile glare -o FILE.json wrote with the observers of photile import, if the "
                              "results have none")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE.ifc",
                         help="file to write")
@@ -229,7 +230,7 @@ def main() -> int:
             print(f"warning: {line}", file=sys.stderr)
         print("\n".join(lines))
 
-    return in_ifc_child("photile.to_ifc", [options.ifc], lambda: exit_code("photile.to_ifc", work))
+    return in_ifc_child([options.ifc], lambda: exit_code(work))
 
 
 if __name__ == "__main__":

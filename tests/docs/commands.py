@@ -23,8 +23,8 @@ sys.path[:0] = [str(SOURCE / "scenes"), str(SOURCE / "bench/lighting")]
 from scene_tools.gltf_writer import GltfDocument  # noqa: E402
 from scene_tools.shapes import Shape  # noqa: E402
 
-# What stands for something that is not there, in the synopses and beside schedulers.
-PLACEHOLDER = re.compile(r"\b(SCENE|FILE|FIRST|PICTURE|FOLDER|PATTERN|HEIGHT|TOPIC)\b|\.\.\.|#FRAMESPEC#|\[--")
+# What stands for something that is not there, in the synopses and beside schedulers; tests/python import files.
+PLACEHOLDER = re.compile(r"^photile import|\b(SCENE|FILE|FIRST|PICTURE|FOLDER|PATTERN|HEIGHT|TOPIC)\b|\.\.\.|#FRAMESPEC#|\[--")
 LAMPS = ("desk_lamp", "daylight", "lamp", "ceiling_panel", "ceiling_left", "desk1", "picture_spot", "floor_lamp",
          "downlight")
 IMAGE = ["--size", "24x16"]
@@ -74,6 +74,8 @@ def small(words):
     """The command with little to compute."""
     words = [word.replace("\0", "####") for word in words]
     added = IMAGE if " --integrator path" in " ".join(words) else SMALL.get(words[1], [])
+    if words[1] == "layout":
+        return [*words, "--", *SMALL["measure"]]
     kept = [REPLACED.get(option, word) for option, word in zip(["", *words], words)]
     for option, value in zip(added[::2], added[1::2]):
         text = f"{option} {value.split('=')[0]}" if option == "--set" else option

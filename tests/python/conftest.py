@@ -1,9 +1,19 @@
 """Scenes that the tests share, made of arrays."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
 import photile
+
+
+def run_photile(*words, start=(os.environ.get("PHOTILE_COMMAND", "photile"),), **options):
+    """The command, which starts the Python that runs the tests."""
+    return subprocess.run([*start, *map(str, words)], capture_output=True, text=True,
+                          env={**os.environ, "VIRTUAL_ENV": sys.prefix}, **options)
 
 
 def quad(corner, u, v):

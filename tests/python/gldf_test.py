@@ -1,9 +1,11 @@
 """GLDF files as luminaires: a zip that is made here, of a lamp with two lights."""
 
 import json
-import subprocess
-import sys
+import resource
 import zipfile
+from functools import partial
+
+from conftest import run_photile
 
 IES = """IESNA:LM-63-2002
 TILT=NONE
@@ -29,9 +31,7 @@ PRODUCT = """<Root><GeneralDefinitions>
 </ProductDefinitions></Root>"""
 
 
-def converted(*arguments):
-    return subprocess.run([sys.executable, "-m", "photile.from_gldf", *map(str, arguments)],
-                          capture_output=True, text=True)
+converted = partial(run_photile, "import")
 
 
 def archive(path, product=PRODUCT, ies=IES, method=zipfile.ZIP_DEFLATED):
@@ -47,9 +47,9 @@ def with_variants(variants):
 
 
 def test_each_light_of_a_variant_is_a_luminaire(tmp_path):
-    run = converted(archive(tmp_path / "lamp.gldf"), tmp_path / "lamp")
-    assert run.returncode == 0 and run.stderr == ""
-    assert run.stdout.splitlines()[-1] == f"--luminaires {tmp_path}/lamp/luminaires.json"
+    run = converted(archive(tmp_path / "lamp.gldf"), "-o", tmp_path / "lamp")
+    assert run.returncode == 0 and run.stderr == "v_1_direct: v_1_direct.ies, 1500 lm\nv_1_indirect: v_1_indirect.ies\n"
+    assert run.stdout == f"--luminaires {tmp_path}/lamp/luminaires.json\n"
     entries = json.loads((tmp_path / "lamp/luminaires.json").read_text())
     assert entries == [
         {"name": "v_1_direct", "file": "v_1_direct.ies", "position": "ceiling", "lumens": 1500},
@@ -61,13 +61,13 @@ def test_each_light_of_a_variant_is_a_luminaire(tmp_path):
 def test_lights_whose_ids_become_one_word_keep_their_own_files(tmp_path):
     lamps = with_variants('<Variant id="a b"><E emitterId="direct"/></Variant>'
                           '<Variant id="a-b"><E emitterId="indirect"/></Variant>')
-    run = converted(archive(tmp_path / "lamp.gldf", lamps), tmp_path / "lamp")
+    run = converted(archive(tmp_path / "lamp.gldf", lamps), "-o", tmp_path / "lamp")
     entries = json.loads((tmp_path / "lamp/luminaires.json").read_text())
     assert run.returncode == 0 and len({entry["file"] for entry in entries}) == 2
     assert {entry["file"] for entry in entries} | {"luminaires.json"} == {
         file.name for file in (tmp_path / "lamp").iterdir()}
     twins = with_variants('<Variant id="a"><E emitterId="direct"/></Variant>' * 2)
-    assert converted(archive(tmp_path / "twins.gldf", twins), tmp_path / "twins").returncode == 0
+    assert converted(archive(tmp_path / "twins.gldf", twins), "-o", tmp_path / "twins").returncode == 0
     assert len(list((tmp_path / "twins").iterdir())) == 3
 
 
@@ -76,11 +76,9 @@ def test_what_a_file_unpacks_to_is_bounded(tmp_path):
     for name, product, ies in (("lights", with_variants(many * 20_000), IES),
                                ("product", PRODUCT + " " * (1 << 26), IES),
                                ("files", with_variants(many * 300), IES + " " * (1 << 20))):
-        bomb = archive(tmp_path / name, product, ies)
-        code = ("import resource, sys; resource.setrlimit(resource.RLIMIT_AS, (700 << 20,) * 2)\n"
-                "from photile.from_gldf import main; sys.exit(main())")
-        run = subprocess.run([sys.executable, "-c", code, str(bomb), str(tmp_path / "out")],
-                             capture_output=True, text=True, timeout=600)
+        bomb = archive(tmp_path / f"{name}.gldf", product, ies)
+        limited = partial(resource.setrlimit, resource.RLIMIT_AS, (700 << 20,) * 2)
+        run = converted(bomb, "-o", tmp_path / "out", preexec_fn=limited, timeout=600)
         assert run.returncode == 3 and run.stderr.count("\n") == 1, run.stderr
         assert "more than" in run.stderr or "at most" in run.stderr, run.stderr
         assert not (tmp_path / "out").exists()
@@ -104,13 +102,13 @@ def test_bad_files_are_told_in_one_line(tmp_path):
                        *((file, "has a flux of") for file in fluxes[:-1]),
                        (fluxes[-1], "bright"),
                        (tmp_path / "absent.gldf", "absent.gldf")):
-        run = converted(file, tmp_path / "out")
+        run = converted(file, "-o", tmp_path / "out")
         assert run.returncode == 3 and run.stdout == ""
         assert told in run.stderr and run.stderr.count("\n") == 1
         assert not (tmp_path / "out").exists()
     full = tmp_path / "full"
     full.mkdir()
     (full / "mine").write_text("kept")
-    run = converted(archive(tmp_path / "lamp.gldf"), full)
+    run = converted(archive(tmp_path / "lamp.gldf"), "-o", full)
     assert run.returncode == 2 and "is not empty" in run.stderr
     assert [file.name for file in full.iterdir()] == ["mine"]

@@ -2,24 +2,19 @@
 and two lamps of one photometric file, whose light on points has a closed form."""
 
 import json
-import os
-import subprocess
-import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import run_photile
 
 import photile
 
 pytest.importorskip("honeybee_radiance", reason="no honeybee-radiance; cmake/fetch.sh test-packages brings it")
 
 model = Path(__file__).parent / "one_room.hbjson"
-
-
-def converted(file, folder):
-    return subprocess.run([sys.executable, "-m", "photile.from_honeybee", str(file), str(folder)],
-                          capture_output=True, text=True)
+converted = partial(run_photile, "import")
 
 
 def turn(axis, degrees):
@@ -45,13 +40,12 @@ def direct_lux(point, instance, factor):
 
 
 def test_lamps_and_sensors_are_where_the_model_has_them(tmp_path):
-    made = converted(model, tmp_path / "room")
+    made = converted(model, "-o", tmp_path / "room.glb")
     assert made.returncode == 0 and made.stderr == ""
     command = made.stdout.split()
     assert command[0] == "photile"
-    subprocess.run([os.environ["PHOTILE_COMMAND"], *command[1:], "--integrator", "path", "--rays", "64",
-                    "--repeats", "2", "-q"], check=True)
-    measured = np.loadtxt(tmp_path / "room" / "results" / "desk.res")
+    run_photile(*command[1:], "--integrator", "path", "--rays", "64", "--repeats", "2", "-q", check=True)
+    measured = np.loadtxt(tmp_path / "room.results" / "desk.res")
     radiance = json.loads(model.read_text())["properties"]["radiance"]
     (lamp,) = radiance["luminaires"]
     points = [np.array(sensor["pos"]) / 1000 for sensor in radiance["sensor_grids"][0]["sensors"]]
@@ -88,8 +82,10 @@ def clear_glass_of_photile(angle, within):
 
 
 def test_surfaces_and_modifiers(tmp_path):
-    assert converted(model, tmp_path).returncode == 0
-    scene = photile.load(tmp_path / "scene.gltf", up="z", sky=("uniform", 1000))
+    assert converted(model, "-o", tmp_path / "a.glb").returncode == 0
+    (listed,) = json.loads(run_photile("info", tmp_path / "a.glb", "--json").stdout)["rooms"]
+    assert listed == {"name": "office", "area": 12, "height": 2.5, "floor": 0, "inside": [2, 1.25, -1.5]}
+    scene = photile.load(tmp_path / "a.glb", sky=("uniform", 1000))
     black, pane = scene.materials
     assert black.diffuse == (0, 0, 0) and black.specular == (0, 0, 0)
     areas = [scene.triangle_areas[scene.triangle_material == i].sum() for i in range(2)]
@@ -119,7 +115,7 @@ def test_what_is_no_model_is_refused_in_a_line(tmp_path):
                  model.read_text().replace("2400}", "1e999}", 1),
                  model.read_text().replace("0.8", "NaN", 1)):
         wrong.write_text(text)
-        made = converted(wrong, tmp_path / "out")
+        made = converted(wrong, "-o", tmp_path / "out" / "a.glb")
         assert made.returncode == 3 and made.stdout == ""
         assert made.stderr.count("\n") == 1 and str(wrong) in made.stderr
         assert not (tmp_path / "out").exists()
@@ -132,6 +128,6 @@ def test_a_model_writes_into_its_folder_alone(tmp_path):
     for name in (str(tmp_path / "elsewhere"), "blinds"):
         bsdf["identifier"] = name
         file.write_text(changed(lambda radiance: radiance["modifiers"].append(bsdf)))
-        made = converted(file, tmp_path / "out")
+        made = converted(file, "-o", tmp_path / "out.glb")
     assert not (tmp_path / "elsewhere.xml").exists()
     assert made.returncode == 0 and "modifier 'blinds': BSDF is not supported" in made.stderr

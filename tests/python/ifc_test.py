@@ -4,13 +4,13 @@ import csv
 import importlib
 import json
 import math
-import os
 import re
-import subprocess
 import sys
+from functools import partial
 
 import numpy as np
 import pytest
+from conftest import run_photile
 
 import photile.converters
 
@@ -93,9 +93,8 @@ def room(tmp_path):
     return tmp_path
 
 
-def converted(*arguments, program="photile.from_ifc"):
-    command = [sys.executable, "-m", program, *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True)
+converted = partial(run_photile, "import")
+returned = partial(run_photile, start=(sys.executable, "-m", "photile.to_ifc"))
 
 
 def test_elements_rooms_and_fixtures_are_where_the_model_has_them(room):
@@ -133,9 +132,9 @@ def test_elements_rooms_and_fixtures_are_where_the_model_has_them(room):
     entries = json.loads((out / "a.luminaires.json").read_text())
     assert len({entry["name"] for entry in entries}) == 2
     assert entries[0]["size"] == [0.6, 0.3] and entries[0]["aim"] == [0, -1, 0] and entries[0]["rotation"] == 0
-    info = subprocess.run([os.environ["PHOTILE_COMMAND"], "info", "--json", out / "a.glb", "--luminaires",
-                           out / "a.luminaires.json"], capture_output=True, check=True)
-    lights = {light["name"]: light["lumens"] for light in json.loads(info.stdout)["lights"]}
+    info = json.loads(run_photile("info", "--json", out / "a.glb", "--luminaires", out / "a.luminaires.json").stdout)
+    lights = {light["name"]: light["lumens"] for light in info["lights"]}
+    assert info["rooms"] == [{key: office[key] for key in ("name", "area", "height", "floor", "inside")}]
     assert lights[entries[1]["name"]] == pytest.approx(LUMENS, rel=1e-4)
     targets = [f"--target={one}" for one in ("*Büro=office-desk", "101=Em=300", "102*=corridor")]
     assert "--target 102*: no room" in converted(room / "room.ifc", "-o", out / "b.glb", *targets).stderr
@@ -201,7 +200,7 @@ def test_rooms_get_what_was_measured_in_them(room):
             ("b.ifc", "c.ifc", 499, ": NOT MET")):
         results["grids"][0]["statistics"]["Em"]["value"] = mean
         (room / "a.json").write_text(json.dumps(results))
-        made = converted(room / source, *arguments, room / written, program="photile.to_ifc")
+        made = returned(room / source, *arguments, room / written)
         assert made.returncode == 0 and made.stderr == "" and f"{said}\n" in made.stdout
         model = ifcopenshell.open(room / written)
         found = element.get_psets(model.by_type("IfcSpace")[0])["Photile_SpaceLighting"]
@@ -215,7 +214,7 @@ def test_rooms_get_what_was_measured_in_them(room):
                          ("this file is read", room / "room.ifc", "-o", room / "room.ifc"),
                          ("not rooms of", room / "room.ifc", "--rooms", room / "a.json")):
         (room / "none.json").write_text(json.dumps({**results, "grids": []}))
-        made = converted(*words[:1], *arguments, room / "d.ifc", *words[1:], program="photile.to_ifc")
+        made = returned(*words[:1], *arguments, room / "d.ifc", *words[1:])
         assert made.returncode in (2, 3) and made.stderr.count("\n") == 1 and said in made.stderr, made.stderr
     assert not (room / "d.ifc").exists()
 

@@ -1,12 +1,10 @@
 """Layouts of luminaires: fields in rooms whose walls are known, and light that has a closed form."""
 
 import json
-import os
-import subprocess
-import sys
 
 import numpy as np
 import pytest
+from conftest import run_photile
 
 from photile.arrangements import Designer, Room
 
@@ -89,11 +87,9 @@ def test_what_is_not_over_the_floor_is_left_out():
 
 
 def laid_out(folder, options):
-    words = (f"-m photile.layout room.obj --luminaire lamp.ies -o out.json --inside 1,1,-1 {options} -- "
+    words = (f"room.obj --luminaire lamp.ies -o out.json --inside 1,1,-1 {options} -- "
              "--rays 64 --repeats 2 --photons 1000 --spacing 0.5").split()
-    path = f"{os.path.dirname(os.environ['PHOTILE_COMMAND'])}:{os.environ['PATH']}"
-    return subprocess.run([sys.executable, *words], cwd=folder, env={**os.environ, "PATH": path},
-                          capture_output=True, text=True)
+    return run_photile("layout", *words, cwd=folder)
 
 
 def make_room(folder, corners, *cabinets):

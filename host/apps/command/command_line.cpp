@@ -14,7 +14,6 @@
 #include <new>
 #include <span>
 #include <sstream>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -25,7 +24,6 @@
 #include "common/foreign_text.hpp"
 #include "common/process_limits.hpp"
 #include "device/program.hpp"
-#include "photile/errors.hpp"
 
 namespace photile::app {
 namespace {
@@ -33,24 +31,14 @@ namespace {
 void define(CLI::App& photile) {
   photile.set_version_flag("--version", version_text());
   photile.require_subcommand(1);
-  add_render_command(photile);
-  add_relight_command(photile);
-  add_compare_command(photile);
-  add_measure_command(photile);
-  add_daylight_command(photile);
-  add_glare_command(photile);
-  add_trade_command(photile);
-  add_devices_command(photile);
-  add_info_command(photile);
-  add_settings_command(photile);
-  add_ies_command(photile);
-  add_validate_command(photile);
-  add_walk_command(photile);
-  add_trace_command(photile);
-  add_view_command(photile);
-  add_bake_command(photile);
-  add_publish_command(photile);
-  add_help_command(photile);
+  for (AddCommand* const add :
+       {add_import_command,  add_render_command,   add_relight_command, add_compare_command,
+        add_measure_command, add_daylight_command, add_glare_command,   add_layout_command,
+        add_trade_command,   add_devices_command,  add_info_command,    add_settings_command,
+        add_ies_command,     add_validate_command, add_walk_command,    add_trace_command,
+        add_view_command,    add_bake_command,     add_publish_command, add_help_command}) {
+    add(photile);
+  }
   for (CLI::App* command : photile.get_subcommands([](CLI::App*) { return true; })) {
     const std::string name = command->get_name();
     if (name == "render" || name == "measure" || name == "walk") continue;

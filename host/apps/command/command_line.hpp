@@ -33,24 +33,12 @@ inline ExitCode exit_code_of(const Error& error) {
   return ExitCode::failure;
 }
 
-void add_render_command(CLI::App& photile);
-void add_relight_command(CLI::App& photile);
-void add_compare_command(CLI::App& photile);
-void add_measure_command(CLI::App& photile);
-void add_daylight_command(CLI::App& photile);
-void add_glare_command(CLI::App& photile);
-void add_ies_command(CLI::App& photile);
-void add_settings_command(CLI::App& photile);
-void add_trade_command(CLI::App& photile);
-void add_devices_command(CLI::App& photile);
-void add_info_command(CLI::App& photile);
-void add_validate_command(CLI::App& photile);
-void add_trace_command(CLI::App& photile);
-void add_walk_command(CLI::App& photile);
-void add_view_command(CLI::App& photile);
-void add_bake_command(CLI::App& photile);
-void add_publish_command(CLI::App& photile);
-void add_help_command(CLI::App& photile);
+using AddCommand = void(CLI::App& photile);
+AddCommand add_import_command, add_render_command, add_relight_command, add_compare_command,
+    add_measure_command, add_daylight_command, add_glare_command, add_layout_command,
+    add_trade_command, add_devices_command, add_info_command, add_settings_command, add_ies_command,
+    add_validate_command, add_walk_command, add_trace_command, add_view_command, add_bake_command,
+    add_publish_command, add_help_command;
 
 /// "0.1.0"
 std::string version_number();

@@ -65,7 +65,7 @@ void show(const std::string& text) {
   }
 }
 
-void run_help(const CLI::App& photile, const std::string& topic) {
+void run_help(CLI::App& photile, const std::string& topic) {
   const auto pages = help_pages();
   std::string text;
   if (topic.empty()) {
@@ -80,8 +80,10 @@ void run_help(const CLI::App& photile, const std::string& topic) {
   }
   std::set<std::string> names;
   std::vector<std::string> others;
-  for (const CLI::App* command : photile.get_subcommands({})) {
+  for (CLI::App* command : photile.get_subcommands([](CLI::App*) { return true; })) {
     names.insert(command->get_name());
+    // One that prints its own help.
+    if (command->get_name() == topic && !command->get_help_ptr()) return command->parse("--help");
     if (command->get_name() == topic) text = command->help("photile");
   }
   for (const auto& [name, file] : pages) {

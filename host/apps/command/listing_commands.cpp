@@ -15,7 +15,6 @@
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/foreign_text.hpp"
-#include "measuring/working_plane.hpp"
 #include "photile/device.hpp"
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
@@ -165,17 +164,10 @@ struct InfoOptions {
 };
 
 void print_text(const Scene& scene, const LightMix& mix, const SceneLoadOptions& load) {
+  const auto rooms = room_summary(scene);  // an error comes before all lines
   for (const auto& line : scene_summary(scene, mix)) std::cout << line << '\n';
   for (const auto& line : sky_lines(load)) std::cout << line << '\n';
-  const auto rooms = measuring::rooms_of_cameras(scene);
-  if (rooms.empty()) {
-    std::cout << "room: none found; no camera is in, or faces, a room with a ceiling\n";
-  }
-  for (const auto& [camera, room] : rooms) {
-    std::cout << fmt::format(
-        "room: {:.1f} m2, {:.2f} x {:.2f} m, {:.2f} m high, floor at {:.2f} m, of camera {}\n",
-        room.area, room.sides.x, room.sides.y, room.height, room.floor, scene.cameras[camera].name);
-  }
+  for (const auto& line : rooms) std::cout << line << '\n';
   for (const auto& line : mesh_summary(scene)) std::cout << line << '\n';
   for (const auto& line : material_summary(scene)) std::cout << line << '\n';
   for (const Camera& camera : scene.cameras) {

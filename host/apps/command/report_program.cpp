@@ -27,23 +27,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of photile.report: beside the installed command, or in the build folder.
-fs::path program_folder() {
-  fs::path folder = folder_of_program(PHOTILE_INSTALLED_REPORT, "python/photile/report");
-  if (fs::exists(folder / "__main__.py")) return folder;
-  throw OutputError(folder.string() +
-                    ": the program that writes reports, plans, UGR tables and Honeybee's files is "
-                    "missing; install photile again");
-}
-
-/// Debian's Python, which has the packages, or the first of the path. Isolated: neither the working
-/// folder nor the environment names modules that it loads.
+/// Isolated: neither the working folder nor the environment names modules that it loads.
 ///   errors   file for what it prints
 /// Returns the exit code, or none where a signal ended it. Errors: OutputError where it does not
 /// start.
 std::optional<int> run_python(std::vector<std::string> arguments, const fs::path& errors) {
-  const std::string python = fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
-  arguments.insert(arguments.begin(), {python, "-I", "-B", program_folder().string()});
+  const std::string python = python_program();
+  arguments.insert(arguments.begin(), {python, "-I", "-B", python_package() / "report"});
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
@@ -107,6 +97,17 @@ void add_template(const ReportOptions& options, std::vector<std::string>& argume
 }
 
 }  // namespace
+
+fs::path python_package() {
+  fs::path folder = folder_of_program(PHOTILE_INSTALLED_PYTHON, "python/photile");
+  if (fs::exists(folder / "__main__.py")) return folder;
+  throw OutputError(folder.string() +
+                    ": photile's Python files are missing; install photile again");
+}
+
+std::string python_program() {
+  return fs::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";
+}
 
 void add_template_option(const OptionGroup& group, ReportOptions& options) {
   group.add("--template", options.templates, "FOLDER",

@@ -23,6 +23,12 @@ struct ReportOptions {
   nlohmann::ordered_json included = {};  ///< what they hold: file and content
 };
 
+/// The folder of photile's Python files: beside the installed command, or in the build folder.
+/// Errors: OutputError where it is missing.
+std::filesystem::path python_package();
+/// Debian's Python, which has the packages, or the first of the path.
+std::string python_program();
+
 /// Adds --template.
 void add_template_option(const OptionGroup& group, ReportOptions& options);
 

@@ -48,7 +48,11 @@ void warn_of_dark_lights(const Scene& scene, const LightMix& mix, const std::vec
 /// open sheets.
 std::vector<std::string> info_warnings(const Scene& scene, const LightMix& mix);
 
-/// Everything that `photile info` prints.
+/// The rooms that photile import has listed beside the scene, or those that are found in it, a line
+/// each. Errors: InputError naming the list.
+std::vector<std::string> room_summary(const Scene& scene);
+
+/// Everything that `photile info` prints. Errors: as above.
 nlohmann::json scene_json(const Scene& scene, const LightMix& mix, const SceneLoadOptions& load);
 
 }  // namespace photile::app

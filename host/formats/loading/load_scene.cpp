@@ -9,22 +9,17 @@
 #include <cmath>
 #include <map>
 #include <new>
-#include <string_view>
 #include <utility>
 
 #include "common/ascii_text.hpp"
-#include "common/value_range.hpp"
 #include "geometry/box.hpp"
 #include "gltf/gltf_import.hpp"
 #include "gltf/lights.hpp"
 #include "loading/light_changes.hpp"
-#include "loading/luminaires.hpp"
 #include "loading/surroundings.hpp"
 #include "obj/obj_reader.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "photile/scene.hpp"
-#include "reading/area_lights.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
 #include "scene/scene_queries.hpp"
@@ -43,10 +38,10 @@ void import_by_extension(reading::ImportContext& context) {
   } else if (extension == ".gltf" || extension == ".glb") {
     gltf::import_gltf(context);
   } else {
-    throw context.error(fmt::format(
-        "unknown scene format '{}'; {}", extension,
-        extension == ".ifc" ? "convert it by python3 -m photile.from_ifc FILE.ifc -o FILE.glb"
-                            : "give an .obj, .gltf or .glb file"));
+    throw context.error(fmt::format("unknown scene format '{}'; {}", extension,
+                                    extension == ".ifc"
+                                        ? "convert it by photile import FILE.ifc -o FILE.glb"
+                                        : "give an .obj, .gltf or .glb file"));
   }
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <unordered_map>
-#include <vector>
 
 #include "photile/ray_scene.hpp"
 #include "trace/random_stream.hpp"
@@ -25,6 +24,8 @@ constexpr std::uint32_t samples = 8192;  // points whose headroom is looked at
 constexpr double plan_pixels = 1024;     // along the longer side
 constexpr double below_slope = 2.5;      // cells of a room: a tenth of its height
 constexpr double above_plane = 2e-3;     // metres
+constexpr double least_width = 0.8;      // metres of a room; walls and cabinets are narrower
+constexpr double near_ceiling = 0.9;     // of a room's height: above doors and windows
 
 /// A horizontal triangle.
 struct Piece {
@@ -75,8 +76,11 @@ void measure_floor_of(const trace::Room& room, const RayScene& rays, const trace
   }
 }
 
-/// Looks up from points spread evenly over all pieces.
-void measure_room(const RayScene& rays, const trace::PlanAxes& axes, std::vector<Piece>& pieces) {
+/// Looks up from points spread evenly over all pieces: `visit` is given the piece, its area that a
+/// point stands for, the point, and the metres above it, HUGE_VAL in the open.
+template <class Visit>
+void measure_room(const RayScene& rays, const trace::PlanAxes& axes, std::vector<Piece>& pieces,
+                  const Visit& visit) {
   const Scene& scene = rays.scene();
   const trace::FlushDenormals flush_denormals;
   const glm::vec3 up(axes.up);
@@ -95,14 +99,12 @@ void measure_room(const RayScene& rays, const trace::PlanAxes& axes, std::vector
     const trace::TriangleHit where{piece.triangle, weights.x, weights.y};
     const auto point = trace::surface_hit(scene, where, -up);
     const auto above = trace::intersect(rays, point.origin_towards(up), up);
-    if (!above) {
-      piece.open += total / samples;
-      continue;
+    double room = HUGE_VAL;
+    if (above) {
+      const auto ceiling = trace::surface_hit(scene, *above, up);
+      room = glm::dot(glm::dvec3(ceiling.position - point.position), axes.up);
     }
-    const auto ceiling = trace::surface_hit(scene, *above, up);
-    const double room = glm::dot(glm::dvec3(ceiling.position - point.position), axes.up);
-    if (room < least_room) continue;
-    (room <= trace::Room::most_height ? piece.covered : piece.open) += total / samples;
+    if (room >= least_room) visit(piece, total / samples, glm::dvec3(point.position), room);
   }
 }
 
@@ -132,7 +134,9 @@ Floor find_floor(const RayScene& rays, const trace::PlanAxes& axes, const trace:
   if (room) {
     measure_floor_of(*room, rays, axes, pieces);
   } else {
-    measure_room(rays, axes, pieces);
+    measure_room(rays, axes, pieces, [](Piece& piece, double area, const auto&, double above) {
+      (above <= trace::Room::most_height ? piece.covered : piece.open) += area;
+    });
   }
   const bool any_covered = std::any_of(pieces.begin(), pieces.end(),
                                        [](const Piece& piece) { return piece.covered > 0; });
@@ -235,6 +239,26 @@ double RoomAtHeight::area() const {
       glm::floor((high_ - first_) / side_) - glm::ceil((low_ - first_) / side_) + 1.0;
   const glm::dvec2 sides = high_ - low_;
   return static_cast<double>(cells_.size()) / (counts.x * counts.y) * sides.x * sides.y;
+}
+
+std::vector<glm::dvec3> places_in_rooms(const RayScene& rays, const trace::PlanAxes& axes) {
+  constexpr int directions = 8;
+  std::vector<Piece> pieces = horizontal_pieces(rays.scene(), axes);
+  std::vector<glm::dvec3> places;
+  measure_room(rays, axes, pieces, [&](Piece&, double, const glm::dvec3& point, double room) {
+    if (room > trace::Room::most_height) return;
+    const glm::dvec3 from = point + near_ceiling * room * axes.up;
+    for (int i = 0; i < directions; ++i) {
+      const double angle = glm::two_pi<double>() * i / directions;
+      const glm::vec3 way(std::cos(angle) * axes.right + std::sin(angle) * axes.ahead);
+      const auto wall = trace::intersect(rays, glm::vec3(from), way);
+      if (!wall) return;
+      const auto surface = trace::surface_hit(rays.scene(), *wall, way);
+      if (glm::distance(glm::dvec3(surface.position), from) < least_width / 2) return;
+    }
+    places.push_back(point + 0.5 * room * axes.up);
+  });
+  return places;
 }
 
 FloorPlan::FloorPlan(const Scene& scene, const Floor& floor, const trace::PlanAxes& axes,

@@ -1,7 +1,6 @@
 // Where the floor of a room is, and how far the room reaches at a height above it.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <map>
@@ -51,6 +50,10 @@ class RoomAtHeight {
   std::map<Cell, double> cells_;  ///< the height of the cut in each
   glm::dvec2 low_, high_;
 };
+
+/// Places at half the height of rooms with walls all around; what is within walls and furniture is
+/// left out.
+std::vector<glm::dvec3> places_in_rooms(const RayScene& rays, const trace::PlanAxes& axes);
 
 /// The floor as seen from above.
 class FloorPlan {

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
-#include <optional>
-#include <utility>
 
 #include "common/ascii_text.hpp"
 #include "measuring/floor.hpp"
@@ -228,23 +226,42 @@ std::optional<RoomSize> room_size(const Scene& scene, const std::optional<glm::d
   return room ? size_of(rays, axes, *room) : std::nullopt;
 }
 
-std::vector<std::pair<std::size_t, RoomSize>> rooms_of_cameras(const Scene& scene) {
-  constexpr std::size_t most_cameras = 16;
-  std::vector<std::pair<std::size_t, RoomSize>> sizes;
-  if (scene.triangle_count() == 0 || scene.cameras.empty()) return sizes;
+std::vector<std::pair<std::uint32_t, RoomSize>> rooms_of(const Scene& scene) {
+  constexpr std::uint32_t most_cameras = 16, most_rooms = 100;
+  std::vector<std::pair<std::uint32_t, RoomSize>> sizes;
+  if (scene.triangle_count() == 0) return sizes;
   const trace::PlanAxes axes;
   const RayScene rays(scene);
   std::vector<trace::Room> rooms;
-  for (std::size_t i = 0; i < std::min(scene.cameras.size(), most_cameras); ++i) {
-    auto room = trace::Room::of_camera(rays, axes, scene.cameras[i]);
+  const auto add = [&](std::optional<trace::Room> room, std::uint32_t camera,
+                       const glm::dvec3& inside) {
     const auto is_same = [&](const trace::Room& other) {
       return glm::distance(other.low(), room->low()) + glm::distance(other.high(), room->high()) +
                  std::abs(other.cut_height() - room->cut_height()) <
              0.5;  // metres
     };
-    if (!room || std::any_of(rooms.begin(), rooms.end(), is_same)) continue;
-    if (const auto size = size_of(rays, axes, *room)) sizes.emplace_back(i, *size);
+    if (!room || std::any_of(rooms.begin(), rooms.end(), is_same)) return false;
+    if (auto size = size_of(rays, axes, *room)) {
+      size->inside = position_in_world(scene, inside);
+      sizes.emplace_back(camera, *size);
+    }
     rooms.push_back(*std::move(room));
+    return true;
+  };
+  for (std::uint32_t i = 0; i < scene.cameras.size() && i < most_cameras; ++i) {
+    add(trace::Room::of_camera(rays, axes, scene.cameras[i]), i, scene.cameras[i].position);
+  }
+  std::uint32_t tries = 0;
+  for (const glm::dvec3& place : places_in_rooms(rays, axes)) {
+    const auto holds = [&](const trace::Room& room) {
+      const double below = room.cut_height() - glm::dot(place, axes.up);
+      return below > 0 && room.holds(axes.plan(place)) &&
+             !trace::occluded(rays, glm::vec3(place), glm::vec3(place + below * axes.up));
+    };
+    if (std::any_of(rooms.begin(), rooms.end(), holds)) continue;
+    // A search that finds nothing new may have been a long one: ten of them end it.
+    tries += add(trace::Room::around(rays, axes, place), none, place) ? 1 : most_rooms / 10;
+    if (tries >= most_rooms) break;
   }
   return sizes;
 }

@@ -29,12 +29,15 @@ struct RoomSize {
   double height = 0;      ///< metres from its floor to most of its ceiling
   double floor = 0;       ///< height of its floor in the file's world
   glm::dvec2 sides{0.0};  ///< metres of the upright rectangle around its plan
+  /// Of rooms_of: the camera's position, or a point in the room, in the file's world.
+  glm::dvec3 inside{0.0};
 };
 /// Of the room around `inside`, or of the first camera's; none where the scene has no such room.
 /// Errors: UsageError where the point is in none.
 std::optional<RoomSize> room_size(const Scene& scene, const std::optional<glm::dvec3>& inside);
-/// Those of the first 16 cameras, each once, with the camera's index.
-std::vector<std::pair<std::size_t, RoomSize>> rooms_of_cameras(const Scene& scene);
+/// Those of the first 16 cameras, with the camera's index, and others with walls all around, with
+/// `none`: each once, 100 at most.
+std::vector<std::pair<std::uint32_t, RoomSize>> rooms_of(const Scene& scene);
 
 /// "floor+0.75", "floor", or "1.2": a height in the file's world. Errors: UsageError.
 WorkingPlane parse_working_plane(const std::string& text);

@@ -147,7 +147,7 @@ def _run(arguments: Sequence[str] | None) -> None:
     parser.add_argument("--language", help="language of the report: en, de, or NAME of FOLDER/words/NAME.json")
     parser.add_argument("--include", action="append", default=[], metavar="FILE.json",
                         help="other results to show: of photile glare, daylight, measure --daylight-factor, or "
-                             "rooms.json of photile.from_ifc; repeatable")
+                             "rooms.json of photile import; repeatable")
     parser.add_argument("--outdoor-lux", metavar="LUX",
                         help="median diffuse illuminance outdoors (EN 17037, table A.3), which gives daylight factors "
                              "their levels")

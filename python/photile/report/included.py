@@ -1,5 +1,5 @@
 """Results of ``photile glare``, ``photile daylight`` and ``photile measure --daylight-factor`` in a report, as
-tables and maps of their planes, and the rooms of a building that ``photile.from_ifc`` writes."""
+tables and maps of their planes, and the rooms of a building that ``photile import`` writes."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ class Report:
             except (KeyError, IndexError, TypeError, ValueError, AttributeError):
                 raise BadInput(f"{each['file']}: this is neither a result nor rooms of a building; give what "
                                "photile glare, daylight or measure --daylight-factor has written by -o FILE.json, or "
-                               "NAME.rooms.json of photile.from_ifc") from None
+                               "NAME.rooms.json of photile import") from None
         self._factors = factor_table(record["grids"], outdoors) if record.get("unit") == "DF %" else None
         if self._factors:
             self._about["subject"] = "Daylight factors"

@@ -1,4 +1,4 @@
-"""The rooms of a building, which ``photile.from_ifc`` writes as ``rooms.json``, and what a record has of them."""
+"""The rooms of a building, which ``photile import`` writes as ``rooms.json``, and what a record has of them."""
 
 from __future__ import annotations
 
