@@ -23,7 +23,7 @@ host() { tracked host | grep -E '\.(cpp|hpp)$'; }
 # lengths: the number of lines of each file on standard input, ascending
 lengths() { while read -r file; do wc -l <"$file"; done | sort -n; }
 
-row 'lines of host/' "$(host | lines)" at-most 77950 58000
+row 'lines of host/' "$(host | lines)" at-most 78450 58000
 row 'files of host/' "$(host | wc -l)" at-most 550 520
 row 'lines of host/renderer/' "$(host | grep '^host/renderer/' | lines)" at-most 36100 32000
 row 'lines of the median file of host/' \
@@ -33,7 +33,7 @@ row 'headers of host/ under 30 lines' \
 row 'public headers' "$(tracked include | grep '\.hpp$' | wc -l)" at-most 25
 row 'files that name processes outside host/cluster/' \
   "$(host | grep -v '^host/cluster/' | xargs grep -lwE 'Communicator|MPI' | wc -l)" at-most 7 6
-row 'lines of tests/' "$(tracked tests | grep -E '\.(cpp|hpp|py|sh)$' | lines)" at-most 55550 45000
+row 'lines of tests/' "$(tracked tests | grep -E '\.(cpp|hpp|py|sh)$' | lines)" at-most 55950 45000
 row 'lines of bench/' "$(tracked bench | grep -E '\.(cpp|hpp|py|sh)$' | lines)" at-most 17000
 row 'files below tests/' "$(tracked tests | wc -l)" at-most 1000
 row 'conditional directives of kernels/' \
