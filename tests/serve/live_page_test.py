@@ -303,6 +303,7 @@ def check_plan(browser, entries, loaded):
     middles = "return page.live.luminaires.state.entries.map(({middles}) => middles[0])"
     browser.run("const [, [x, , z]] = arguments[0]; page.plan.open({middle: [x, z], metres: 4})", browser.run(middles))
     for modifiers, beside in ((0, 0), (8, 0.3)):
+        browser.until("return document.querySelectorAll('#outlines circle').length === 2")  # as the plan has them
         first, second = browser.run(middles)
         goal = [first[0] + (beside or 0.05), second[1], second[2] + 0.4]
         start, end = (browser.run("return page.placeOf(arguments[0])", place) for place in (second, goal))
