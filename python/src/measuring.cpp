@@ -66,8 +66,7 @@ Lit lit_for(const SharedScene& scene, const py::dict& options,
     if (!target.empty()) {
       throw UsageError(
           "target needs lux, and daylight_factor gives per cent; leave out one of them, or rate "
-          "the "
-          "room by EN 17037 with photile.daylight");
+          "the room by EN 17037 with photile.daylight");
     }
     for (measuring::SensorGrid& grid : grids) grid.target.clear();
     return under_overcast_sky(scene, *ground, options);
@@ -122,12 +121,7 @@ std::shared_ptr<Measuring> measure(const SharedScene& scene, const py::list& pla
         });
     measuring::Measurement measured = measuring::measurement_of(grids, readings);
     if (lit.overcast) {
-      double most = 0;
-      for (measuring::GridValues& values : measured) {
-        values.lights.resize(1);
-        most = std::max(most, values.total().statistics.maximum.value);
-      }
-      if (const auto warning = report::darkness_warning(most); !warning.empty()) told.note(warning);
+      report::keep_daylight_factors(measured, told);
     } else {
       measuring::mark_dark_points(measured);
       for (std::string& line : measuring::doubts_of(measured, lit.mix.lights)) {

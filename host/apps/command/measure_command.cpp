@@ -199,13 +199,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   if (!leads()) return;
   measuring::Measurement measurement = measuring::measurement_of(grids, readings);
   if (options.daylight_factor) {
-    double most = 0;
-    for (measuring::GridValues& values : measurement) {
-      values.lights.resize(1);
-      most = std::max(most, values.total().statistics.maximum.value);
-    }
-    const std::string warning = report::darkness_warning(most);
-    if (!warning.empty()) progress.note(warning);
+    report::keep_daylight_factors(measurement, progress);
   } else {
     measuring::mark_dark_points(measurement);
     for (std::string& line : measuring::doubts_of(measurement, mix.lights)) {

@@ -142,6 +142,16 @@ std::string darkness_warning(double most_percent) {
   return fmt::format("warning: {}: {}", reaches, measuring::closed_to_the_sky);
 }
 
+void keep_daylight_factors(measuring::Measurement& measurement, Progress& progress) {
+  double most = 0;
+  for (measuring::GridValues& values : measurement) {
+    values.lights.resize(1);
+    most = std::max(most, values.total().statistics.maximum.value);
+  }
+  const std::string warning = darkness_warning(most);
+  if (!warning.empty()) progress.note(warning);
+}
+
 std::string autonomy_text(const GridDaylight& grid, const DaylightAsked& asked,
                           std::size_t rounds) {
   // IES LM-83-12: nominally accepted, and preferred.

@@ -9,8 +9,10 @@
 
 #include "daylight/daylight_metrics.hpp"
 #include "daylight/sky_states.hpp"
+#include "measuring/measurement.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/defaults.hpp"
+#include "photile/progress.hpp"
 #include "photile/sensors.hpp"
 
 namespace photile::report {
@@ -76,6 +78,10 @@ DaylightResults daylight_results(const DaylightAsked& asked, const daylight::Yea
 ///   most_percent   of the points: per cent of the light on open ground
 /// Empty where there is more.
 std::string darkness_warning(double most_percent);
+
+/// Makes daylight factors, in per cent, of what was measured under a sky of 100 lux: those of all
+/// its light. Notes a darkness_warning.
+void keep_daylight_factors(measuring::Measurement& measurement, Progress& progress);
 
 /// "sDA 300,50% 62.1 +-0.8%: meets 55% (certain)": which of the two levels of IES LM-83 are met,
 /// 55% or 75% of the points, and whether three standard errors leave a doubt.
