@@ -15,7 +15,6 @@
 #include "command/summary.hpp"
 #include "command/terminal_progress.hpp"
 #include "loading/load_scene.hpp"
-#include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "render/render_session.hpp"
 

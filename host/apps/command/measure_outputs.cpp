@@ -7,7 +7,6 @@
 
 #include "command/command_line.hpp"
 #include "command/option_group.hpp"
-#include "command/output_files.hpp"
 #include "command/run_record.hpp"
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"

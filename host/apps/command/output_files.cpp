@@ -1,7 +1,5 @@
 #include "command/output_files.hpp"
 
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
@@ -11,10 +9,8 @@
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
 #include "image/layer_set.hpp"
-#include "image/white.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
-#include "report/false_colour.hpp"
 #include "report/sheet.hpp"
 
 namespace photile::app {

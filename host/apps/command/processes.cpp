@@ -9,7 +9,6 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
-#include <string>
 #include <string_view>
 #include <thread>
 

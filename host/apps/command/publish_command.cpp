@@ -27,7 +27,6 @@
 #include "command/terminal_progress.hpp"
 #include "common/files.hpp"
 #include "loading/load_scene.hpp"
-#include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "publish/published_room.hpp"
 #include "render/quality.hpp"

@@ -10,7 +10,6 @@
 #include "command/setting_options.hpp"
 #include "command/terminal_progress.hpp"
 #include "photile/errors.hpp"
-#include "render/quality.hpp"
 #include "render/render_plan.hpp"
 
 namespace photile::app {

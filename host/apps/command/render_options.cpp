@@ -6,12 +6,8 @@
 #include <array>
 #include <cmath>
 #include <set>
-#include <string_view>
 
-#include "command/option_group.hpp"
 #include "command/processes.hpp"
-#include "command/scene_options.hpp"
-#include "command/setting_options.hpp"
 #include "common/ascii_text.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"

@@ -15,7 +15,6 @@
 #include "photile/errors.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
-#include "report/false_colour.hpp"
 #include "report/printing.hpp"
 #include "view/moods.hpp"
 

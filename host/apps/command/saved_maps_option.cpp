@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "command/command_line.hpp"
 #include "render/render_costs.hpp"
 #include "render/render_session.hpp"
 #include "render/setting.hpp"
-#include "saved_maps/saved_maps.hpp"
 
 namespace photile::app {
 namespace {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <vector>
 
 #include "command/option_group.hpp"
 #include "common/files.hpp"

@@ -11,8 +11,6 @@
 #include "command/option_group.hpp"
 #include "common/files.hpp"
 #include "measuring/furniture.hpp"
-#include "measuring/sensor_grid.hpp"
-#include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "command/option_group.hpp"
 #include "command/output_files.hpp"

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
-#include <string>
 
 #include "command/scene_report.hpp"
 #include "command/terminal_progress.hpp"

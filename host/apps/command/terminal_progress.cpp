@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <string_view>
 
 #include "command/processes.hpp"
 #include "common/foreign_text.hpp"

@@ -1,10 +1,8 @@
 // The surfaces of a room as a graphics processor draws them.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <span>
 #include <vector>
 
 #include "bake/light_atlas.hpp"

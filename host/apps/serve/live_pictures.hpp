@@ -2,10 +2,8 @@
 #pragma once
 
 #include <glm/glm.hpp>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "image/white.hpp"
 #include "photile/layered_picture.hpp"

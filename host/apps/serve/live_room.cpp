@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "common/process_limits.hpp"
-#include "image/white.hpp"
 #include "photile/errors.hpp"
 
 namespace photile::serve {

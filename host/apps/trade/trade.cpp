@@ -2,9 +2,7 @@
 
 #include <string_view>
 
-#include "photile/layered_picture.hpp"
 #include "photile/progress.hpp"
-#include "photile/renderer.hpp"
 #include "render/quality.hpp"
 #include "render/setting.hpp"
 

@@ -3,8 +3,6 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
-#include <optional>
 #include <vector>
 
 #include "photile/camera.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <utility>
 
 #include "photile/errors.hpp"
 #include "render/quality.hpp"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <condition_variable>
-#include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
 #include <mutex>

@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <string>
-
 #include "photile/errors.hpp"
-#include "photile/layered_picture.hpp"
 #include "writing/edited_scene.hpp"
 
 namespace photile::view {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <string_view>
 
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"

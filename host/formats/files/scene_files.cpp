@@ -10,9 +10,7 @@
 #include <system_error>
 
 #include "common/files.hpp"
-#include "common/foreign_text.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 
 namespace photile::files {
 

@@ -11,11 +11,9 @@
 #include <numbers>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "gltf/accessor.hpp"
 #include "gltf/document.hpp"
-#include "photile/scene.hpp"
 #include "scene/scene_queries.hpp"
 
 namespace photile::gltf {

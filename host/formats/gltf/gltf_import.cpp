@@ -17,7 +17,6 @@
 #include "gltf/lights.hpp"
 #include "gltf/materials.hpp"
 #include "gltf/meshes.hpp"
-#include "gltf/nodes.hpp"
 #include "photile/limits.hpp"
 #include "pictures/textures.hpp"
 #include "reading/triangles.hpp"

@@ -8,9 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <unordered_set>
-#include <vector>
 
-#include "files/scene_files.hpp"
 #include "gltf/document.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"

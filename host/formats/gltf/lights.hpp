@@ -2,10 +2,6 @@
 // node about any light.
 #pragma once
 
-#include <cstdint>
-#include <glm/glm.hpp>
-#include <map>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

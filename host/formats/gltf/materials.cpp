@@ -6,11 +6,9 @@
 #include <cmath>
 #include <optional>
 
-#include "files/scene_files.hpp"
 #include "gltf/document.hpp"
 #include "photile/limits.hpp"
 #include "photile/load_scene.hpp"
-#include "pictures/textures.hpp"
 #include "scene/surface_models.hpp"
 
 namespace photile::gltf {

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <glm/glm.hpp>
-#include <string>
 #include <vector>
 
 #include "files/scene_files.hpp"

@@ -12,8 +12,6 @@
 #include "gltf/document.hpp"
 #include "gltf/lights.hpp"
 #include "gltf/panels.hpp"
-#include "reading/import_context.hpp"
-#include "reading/triangles.hpp"
 #include "scene/surface_models.hpp"
 
 namespace photile::gltf {

@@ -1,10 +1,6 @@
 // Triangles of glTF meshes, as the file has them and where nodes place them.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <glm/glm.hpp>
 #include <string>
 #include <vector>
 

@@ -7,7 +7,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
-#include <optional>
 
 #include "common/ascii_text.hpp"
 #include "gltf/document.hpp"

@@ -10,7 +10,6 @@
 #include <unordered_set>
 #include <vector>
 
-#include "files/scene_files.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"

@@ -6,16 +6,11 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <optional>
-#include <string>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "common/files.hpp"
 #include "common/json_object.hpp"
-#include "files/scene_files.hpp"
 #include "gltf/panels.hpp"
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
@@ -23,7 +18,6 @@
 #include "photile/limits.hpp"
 #include "photometry/photometric_file.hpp"
 #include "scene/light_emission.hpp"
-#include "scene/light_names.hpp"
 #include "scene/mesh_builder.hpp"
 #include "trace/place_camera.hpp"
 #include "trace/ray_query.hpp"

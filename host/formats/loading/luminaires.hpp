@@ -1,7 +1,6 @@
 // Measured lamps that a user places: their luminous openings emit from their true area.
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>

@@ -5,16 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
-#include <vector>
 
 #include "photile/defaults.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "pictures/textures.hpp"
 #include "scene/light_emission.hpp"
-#include "weather/perez_sky.hpp"
-#include "weather/sky_patches.hpp"
 #include "weather/weather_file.hpp"
 
 namespace photile::loading {

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <istream>
-#include <map>
 #include <set>
 #include <streambuf>
-#include <string_view>
 #include <utility>
 
 #include "common/ascii_text.hpp"

@@ -5,12 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string_view>
 #include <utility>
-#include <vector>
 
-#include "common/ascii_text.hpp"
-#include "files/scene_files.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::photometry {

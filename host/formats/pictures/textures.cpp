@@ -5,20 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <memory>
-#include <string>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
-#include "files/scene_files.hpp"
 #include "image/decoder.hpp"
 #include "image/display.hpp"
 #include "image/picture_metadata.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "scene/surface_models.hpp"
 
 namespace photile::pictures {

@@ -16,7 +16,6 @@
 #include "common/files.hpp"
 #include "maps/check_photons.hpp"
 #include "photile/errors.hpp"
-#include "photile/scene.hpp"
 #include "scene/scene_queries.hpp"
 
 namespace photile::saved_maps {

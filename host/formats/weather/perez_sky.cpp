@@ -1,7 +1,5 @@
 #include "weather/perez_sky.hpp"
 
-#include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>

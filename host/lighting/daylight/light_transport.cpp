@@ -9,7 +9,6 @@
 
 #include "daylight/surface_cells.hpp"
 #include "trace/opaque_bsdf.hpp"
-#include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"
 #include "trace/scatter.hpp"
 

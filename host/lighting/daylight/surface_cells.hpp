@@ -1,7 +1,6 @@
 // Surface in cells, each of which reflects the same light to all rays that end in it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>

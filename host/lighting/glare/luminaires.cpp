@@ -10,10 +10,8 @@
 
 #include "geometry/disjoint_sets.hpp"
 #include "photile/defaults.hpp"
-#include "photile/ray_scene.hpp"
 #include "trace/emission_sampling.hpp"
 #include "trace/ray_query.hpp"
-#include "trace/surface.hpp"
 
 namespace photile::glare {
 namespace {

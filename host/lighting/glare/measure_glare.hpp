@@ -1,7 +1,6 @@
 // The glare ratings of observers in a scene.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>

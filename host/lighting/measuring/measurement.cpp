@@ -4,20 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <glm/gtc/constants.hpp>
-#include <string>
 #include <utility>
 
 #include "image/light_change.hpp"
 #include "image/light_layers.hpp"
 #include "photile/errors.hpp"
-#include "photile/light_layers.hpp"
 #include "photile/limits.hpp"
 #include "photile/progress.hpp"
 #include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
-#include "photile/sensors.hpp"
 #include "trace/portal_search.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"

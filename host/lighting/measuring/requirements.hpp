@@ -4,7 +4,6 @@
 #include <glm/glm.hpp>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "measuring/measurement.hpp"

@@ -10,8 +10,6 @@
 #include <numeric>
 #include <sstream>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"

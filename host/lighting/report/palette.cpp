@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <vector>
 
 #include "image/display.hpp"
 #include "photile/errors.hpp"

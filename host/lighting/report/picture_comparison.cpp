@@ -9,7 +9,6 @@
 
 #include "image/layer_set.hpp"
 #include "photile/errors.hpp"
-#include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
 #include "report/false_colour.hpp"
 #include "report/palette.hpp"

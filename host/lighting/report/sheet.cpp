@@ -4,7 +4,6 @@
 #include FT_FREETYPE_H
 
 #include <algorithm>
-#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <mutex>

@@ -1,7 +1,5 @@
 #include "report/tables.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstddef>
 

@@ -6,16 +6,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
-#include <vector>
 
 #include "common/ascii_text.hpp"
-#include "common/files.hpp"
 #include "image/light_layers.hpp"
 #include "photile/errors.hpp"
-#include "photile/image.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::image {

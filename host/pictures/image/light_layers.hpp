@@ -5,9 +5,6 @@
 #include <tbb/parallel_for.h>
 
 #include <cstddef>
-#include <cstdint>
-#include <glm/glm.hpp>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -6,14 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <new>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
-#include "image/decoder.hpp"
 #include "image/picture_metadata.hpp"
-#include "photile/limits.hpp"
 
 namespace photile::image {
 

@@ -16,7 +16,6 @@
 #include "image/decoder.hpp"
 #include "image/picture_checks.hpp"
 #include "photile/errors.hpp"
-#include "photile/image.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::image {

@@ -4,7 +4,6 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <string_view>
 
