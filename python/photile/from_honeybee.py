@@ -217,13 +217,19 @@ def _files(model: Any, scene: Path, warnings: list[str]) -> tuple[dict[str, byte
     """By their names beside the scene, and the words of the command that measures."""
     files = {scene.name: _gltf(model, warnings)}
     command = ["photile", "measure", str(scene)]
-    if rooms := _rooms(model, warnings):
+    rooms = _rooms(model, warnings)
+    if rooms:
         files[f"{scene.stem}.rooms.json"] = json_lines(rooms)
     entries, photometry = _luminaires(model, scene.stem, warnings)
     if entries:
         files |= {**photometry, f"{scene.stem}.luminaires.json": json_lines(entries)}
         command += ["--luminaires", str(scene.with_suffix(".luminaires.json"))]
-    for grid in model.properties.radiance.sensor_grids:
+    elif rooms:
+        command += ["--sky", "overcast=10000"]
+    grids = model.properties.radiance.sensor_grids
+    if rooms and not grids:
+        return files, [*command, "--plane", "floor+0.75", "--rooms", "*", "-o", str(scene.with_suffix(".html"))]
+    for grid in grids:
         name = f"{scene.stem}.grids/{grid.identifier}.pts"
         _add(files, name, "".join(" ".join(f"{x:.9g}" for x in [*in_scene(sensor.pos), *in_scene(sensor.dir)]) + "\n"
                                   for sensor in grid.sensors))

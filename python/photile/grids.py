@@ -14,15 +14,15 @@ from .errors import InputError, UsageError
 from .progress import Progress, heard_by
 from .scenes import File, Scene, Vector, floats, vector
 
-__all__ = ["Grid", "grid", "grids"]
+__all__ = ["Grid", "grid", "grids", "rooms"]
 
 
 class Grid:
     """Points that are measured together; `grids` makes them."""
 
-    def __init__(self, core: _photile.Grid, inside: Optional[Vector] = None) -> None:
+    def __init__(self, core: _photile.Grid, of_room: bool = False) -> None:
         self._core = core
-        self._inside = inside
+        self._of_room = of_room  # whether it is named after one
 
     @classmethod
     def of_points(cls, points: ArrayLike, normals: ArrayLike = (0.0, 1.0, 0.0), name: str = "points") -> Grid:
@@ -146,6 +146,7 @@ def grids(
     grid: Union[File, Sequence[File]] = (),
     points: Union[File, Sequence[File]] = (),
     inside: Optional[ArrayLike] = None,
+    rooms: str = "",
     wall_band: float = _photile.wall_band,
     spacing: float = 0.0,
     clearance: float = 0.0,
@@ -167,6 +168,9 @@ def grids(
         Planes as JSON; points in the format of Radiance.
     inside : (3,) floats, optional
         A point in the room, metres; by default it is the room of the first camera.
+    rooms : str
+        A pattern of the names that `rooms` lists, "*" for all: each has its own grids, whose names
+        begin with its own.
     wall_band : float
         Metres that are left out along the walls.
     spacing : float
@@ -186,7 +190,8 @@ def grids(
     InputError
         There is no floor or no room with a ceiling, or a file is malformed.
     UsageError
-        A height or a length is none, the point is in no room, or no point is left.
+        A height or a length is none, the point is in no room, no room has the name, or no point
+        is left.
     """
     options: dict[str, Any] = {
         "plane": str(plane),
@@ -197,6 +202,7 @@ def grids(
         "grid": _files(grid),
         "points": _files(points),
         "inside": None if inside is None else vector(inside, "inside"),
+        "rooms": rooms,
         "wall_band": wall_band,
         "spacing": spacing,
         "clearance": clearance,
@@ -206,7 +212,23 @@ def grids(
         found = _photile.grids(scene._core, options, heard)
     if not found:
         raise UsageError("grids: nothing is asked for; give plane='floor+0.75', or another of the places")
-    return [Grid(core, options["inside"]) for core in found]
+    return [Grid(core, bool(rooms)) for core in found]
+
+
+def rooms(scene: Scene) -> list[dict[str, Any]]:
+    """The rooms of a scene, as `photile info` lists them.
+
+    Those of the file NAME.rooms.json beside it, which `photile import` writes; where there is none,
+    those around its cameras and others with walls on all sides, 100 at most.
+
+    Returns
+    -------
+    list of dict
+        Of each its name; area, m2; height, and floor, the height of its floor, metres; inside, (3,)
+        metres, a point in it; outline, the corners of its floor, and holes, those of what stands in
+        it; and more that the file has.
+    """
+    return _photile.rooms(scene._core)
 
 
 def grid(

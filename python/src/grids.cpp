@@ -9,8 +9,8 @@
 
 #include "arrays.hpp"
 #include "common/foreign_text.hpp"
-#include "measuring/furniture.hpp"
 #include "measuring/measurement.hpp"
+#include "measuring/rooms.hpp"
 #include "measuring/working_plane.hpp"
 #include "parts.hpp"
 #include "photile/limits.hpp"
@@ -32,70 +32,6 @@ const char* name_of(GridRole role) {
   return names[static_cast<std::size_t>(role)];
 }
 
-/// The options of the command that say where it measures.
-struct Places {
-  std::vector<std::string> planes, points;  ///< files
-  std::string plane, cylindrical, semi_cylindrical;
-  bool walls = false, ceiling = false;
-  measuring::WorkingPlane layout;  ///< but its height
-  double clearance = 0;
-};
-
-/// Planes of a file: the background of a task ends at the walls of its room.
-std::vector<SensorGrid> planes_in_rooms(const std::string& file, const Scene& scene) {
-  constexpr double off_table = 0.05;  // metres
-  glm::dvec3 task(0.0);
-  std::vector<SensorGrid> grids = measuring::read_planes(file);
-  for (SensorGrid& grid : grids) {
-    const measuring::PlaneLayout& layout = *grid.layout;
-    if (grid.role == GridRole::task)
-      task = layout.origin + 0.5 * (layout.u + layout.v) + off_table * layout.normal();
-    if (grid.role == GridRole::background) measuring::keep_in_room(scene, task, grid);
-  }
-  std::erase_if(grids, [](const SensorGrid& grid) { return grid.sensors.empty(); });
-  return grids;
-}
-
-/// In the order of the command.
-std::vector<SensorGrid> grids_at(const Places& places, const Scene& scene, Progress& progress) {
-  std::vector<SensorGrid> grids;
-  const auto add = [&](std::vector<SensorGrid> more) {
-    for (SensorGrid& grid : more) grids.push_back(std::move(grid));
-  };
-  const auto at = [&](const std::string& height) {
-    measuring::WorkingPlane plane = places.layout;
-    const measuring::WorkingPlane level = measuring::parse_working_plane(height);
-    plane.above_floor = level.above_floor;
-    plane.height = level.height;
-    return plane;
-  };
-  for (const std::string& file : places.planes) add(planes_in_rooms(file, scene));
-  for (const std::string& file : places.points) add({measuring::read_points(file)});
-  if (!places.plane.empty()) add({measuring::working_plane_grid(scene, at(places.plane))});
-  if (places.walls) add(measuring::wall_grids(scene, at("floor")));
-  if (places.ceiling) add({measuring::ceiling_grid(scene, at("floor"))});
-  if (!places.cylindrical.empty())
-    add({measuring::cylindrical_grid(scene, at(places.cylindrical))});
-  if (!places.semi_cylindrical.empty())
-    add(measuring::semi_cylindrical_grids(scene, at(places.semi_cylindrical)));
-  std::size_t left = 0;
-  for (SensorGrid& grid : grids) {
-    measuring::leave_out_furniture(scene, places.clearance, grid, places.layout.inside);
-    if (grid.sensors.empty()) {
-      throw UsageError(grid.name +
-                       ": no point is left, all lie in objects or too near to them; give " +
-                       "another height or position, or less clearance");
-    }
-    if (!grid.remark.empty()) progress.warn(grid.name + ": " + grid.remark);
-    left += grid.sensors.size();
-  }
-  if (left > limits::max_sensors) {
-    throw UsageError(std::to_string(left) + " points together, more than " +
-                     std::to_string(limits::max_sensors) + "; ask for fewer");
-  }
-  return grids;
-}
-
 py::list grids(const SharedScene& scene, const py::dict& options, const py::object& progress) {
   const auto files = [&](const char* name) {
     return field<std::vector<std::string>>(options, name);
@@ -106,27 +42,38 @@ py::list grids(const SharedScene& scene, const py::dict& options, const py::obje
       throw UsageError(std::string(name) + ": give metres from 0 on");
     return metres;
   };
-  std::optional<glm::dvec3> inside;
+  measuring::Places places{.planes = files("grid"),
+                           .points = files("points"),
+                           .plane = field<std::string>(options, "plane"),
+                           .cylindrical = field<std::string>(options, "cylindrical_at"),
+                           .semi_cylindrical = field<std::string>(options, "semi_cylindrical_at"),
+                           .walls = field<bool>(options, "walls"),
+                           .ceiling = field<bool>(options, "ceiling"),
+                           .layout = {.wall_band = length("wall_band", limits::max_coordinate),
+                                      .spacing = length("spacing", limits::max_coordinate),
+                                      .north = field<double>(options, "north")},
+                           .clearance = length("clearance", limits::max_coordinate)};
   if (!options["inside"].is_none()) {
     const auto place = field<std::array<double, 3>>(options, "inside");
-    inside = glm::dvec3(place[0], place[1], place[2]);
+    places.layout.inside = glm::dvec3(place[0], place[1], place[2]);
   }
-  const Places places{.planes = files("grid"),
-                      .points = files("points"),
-                      .plane = field<std::string>(options, "plane"),
-                      .cylindrical = field<std::string>(options, "cylindrical_at"),
-                      .semi_cylindrical = field<std::string>(options, "semi_cylindrical_at"),
-                      .walls = field<bool>(options, "walls"),
-                      .ceiling = field<bool>(options, "ceiling"),
-                      .layout = {.wall_band = length("wall_band", limits::max_coordinate),
-                                 .spacing = length("spacing", limits::max_coordinate),
-                                 .north = field<double>(options, "north"),
-                                 .inside = inside},
-                      .clearance = length("clearance", limits::max_coordinate)};
-  auto found = run(progress, [&](Progress& told) { return grids_at(places, *scene, told); });
+  const auto names = field<std::string>(options, "rooms");
+  auto found = run(progress, [&](Progress& told) {
+    if (!names.empty()) places.rooms = measuring::rooms_named(*scene, names);
+    return measuring::grids_at(*scene, places, told);
+  });
   py::list list;
   for (SensorGrid& grid : found) list.append(std::make_shared<SensorGrid>(std::move(grid)));
   return list;
+}
+
+py::object rooms(const SharedScene& scene) {
+  auto list = nlohmann::json::array();
+  {
+    const Unlocked unlocked;
+    for (auto& room : measuring::rooms_of(*scene)) list.push_back(std::move(room.facts));
+  }
+  return parsed(json_text(list, -1));
 }
 
 /// Points of arrays, in the file's world.
@@ -233,6 +180,7 @@ void define_grids(py::module_& module) {
           })
       .def_property_readonly("plane", &plane_of);
   module.def("grids", &grids);
+  module.def("rooms", &rooms);
   module.def("grid_of_points", &grid_of_points);
   module.def("plan", &plan_of);
 }

@@ -205,13 +205,15 @@ py::object record_of(const Measuring& measured, const py::dict& facts) {
                      (lit.direct ? ": needs all light, and direct light alone was measured"
                                  : ": is about direct light alone; give it to photile.measure"));
   }
-  std::optional<glm::dvec3> inside;
-  if (const auto place = field<std::optional<std::array<double, 3>>>(facts, "inside"))
-    inside = glm::dvec3((*place)[0], (*place)[1], (*place)[2]);
   std::string json;
   {
     const Unlocked unlocked;
-    run.room = measuring::room_size(*lit.scene, inside);
+    const auto& inside = grids.front().grid.inside;
+    const auto is_there = [&](const measuring::GridValues& each) {
+      return each.grid.inside == inside;
+    };
+    if (std::all_of(grids.begin(), grids.end(), is_there))
+      run.room = measuring::room_at(*lit.scene, inside);
     const std::string unit = lit.overcast ? "DF %" : "lux";
     auto record = report::run_json(measured.grids, run, unit);
     record["report"]["colours"] = report::colours_json({.scale = 0, .label = unit});

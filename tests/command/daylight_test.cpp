@@ -93,9 +93,9 @@ TEST_CASE("the window's year is that of photile daylight, and is refined") {
   options.render.load.situation.weather = weather;
   options.parameters.repeats = 2;
   options.parameters.gathering.rays = 64;
-  options.places.plane.height = "floor+0.75";
-  options.places.plane.wall_band = 0.2;
-  options.places.plane.inside = {0, 0, 0};
+  options.places.plane = "floor+0.75";
+  options.places.layout.wall_band = 0.2;
+  options.places.inside = {0, 0, 0};
   options.seconds = 1e-3;
   std::vector<std::string> told;
   app::refine_year(

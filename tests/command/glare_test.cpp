@@ -4,7 +4,6 @@
 
 #include "box_scene.hpp"
 #include "photile/image.hpp"
-#include "source_folder.hpp"
 
 namespace photile::test {
 namespace {

@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "box_scene.hpp"
-#include "command/processes.hpp"
 #include "command/terminal_progress.hpp"
 #include "photile/image.hpp"
 #include "skipped.hpp"

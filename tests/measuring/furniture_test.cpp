@@ -118,7 +118,7 @@ SensorGrid grid_of(const Scene& scene, const glm::dvec3& inside = {0.3, 2.0, 0.3
   plane.spacing = 0.2;
   plane.inside = inside;
   SensorGrid grid = working_plane_grid(scene, plane);
-  leave_out_furniture(scene, 0, grid, inside);
+  leave_out_furniture(scene, 0, grid);
   return grid;
 }
 

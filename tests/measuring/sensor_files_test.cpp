@@ -8,7 +8,6 @@
 
 #include "measuring/sensor_grid.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "report/honeybee_files.hpp"
 #include "temporary_folder.hpp"
 

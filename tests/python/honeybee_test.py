@@ -46,13 +46,18 @@ def test_lamps_and_sensors_are_where_the_model_has_them(tmp_path):
     assert command[0] == "photile"
     run_photile(*command[1:], "--integrator", "path", "--rays", "64", "--repeats", "2", "-q", check=True)
     measured = np.loadtxt(tmp_path / "room.results" / "desk.res")
-    radiance = json.loads(model.read_text())["properties"]["radiance"]
+    whole = json.loads(model.read_text())
+    radiance = whole["properties"]["radiance"]
     (lamp,) = radiance["luminaires"]
     points = [np.array(sensor["pos"]) / 1000 for sensor in radiance["sensor_grids"][0]["sensors"]]
     expected = [sum(direct_lux(point, instance, lamp["light_loss_factor"])
                     for instance in lamp["luminaire_zone"]["instances"]) for point in points]
     # The lamps are squares of 5 cm at least 1.65 m away.
     assert measured == pytest.approx(expected, rel=0.005)
+    radiance["sensor_grids"] = []  # then all rooms are measured
+    (tmp_path / "a.hbjson").write_text(json.dumps(whole))
+    words = converted(tmp_path / "a.hbjson", "-o", tmp_path / "a.glb").stdout.replace("'", "").split()
+    assert "office: " in run_photile(*words[1:], "--integrator", "path", "--rays", "4", check=True).stdout
 
 
 def even_sky_through(pane):
@@ -84,7 +89,9 @@ def clear_glass_of_photile(angle, within):
 def test_surfaces_and_modifiers(tmp_path):
     assert converted(model, "-o", tmp_path / "a.glb").returncode == 0
     (listed,) = json.loads(run_photile("info", tmp_path / "a.glb", "--json").stdout)["rooms"]
-    assert listed == {"name": "office", "area": 12, "height": 2.5, "floor": 0, "inside": [2, 1.25, -1.5]}
+    assert [listed] == json.loads((tmp_path / "a.rooms.json").read_text())
+    facts = {"name": "office", "area": 12, "height": 2.5, "floor": 0, "inside": [2, 1.25, -1.5]}
+    assert facts.items() <= listed.items()
     scene = photile.load(tmp_path / "a.glb", sky=("uniform", 1000))
     black, pane = scene.materials
     assert black.diffuse == (0, 0, 0) and black.specular == (0, 0, 0)

@@ -2,7 +2,6 @@
 
 #include <atomic>
 
-#include "bake/baked_light.hpp"
 #include "geometry/disjoint_sets.hpp"
 #include "photile/camera.hpp"
 #include "scene/panes.hpp"

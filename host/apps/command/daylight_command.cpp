@@ -44,20 +44,6 @@ std::size_t states_of_blinds(const DaylightOptions& options) {
   return options.blinds_are_scene() ? 2 : std::size_t{1} << options.blinds.size();
 }
 
-std::vector<measuring::SensorGrid> grids_of(const DaylightOptions& options, const Scene& scene,
-                                            std::size_t hours, Progress& progress) {
-  std::vector<measuring::SensorGrid> grids = grids_at(options.places, scene);
-  const std::size_t sensors = clear_of_furniture(options.places.plane, scene, grids, progress);
-  const std::size_t states = states_of_blinds(options);
-  if (sensors * hours * states > limits::max_profile_values) {
-    throw UsageError(
-        fmt::format("{} points of {} hours in {} states are more than {} values; give "
-                    "fewer points",
-                    sensors, hours, states, limits::max_profile_values));
-  }
-  return grids;
-}
-
 /// The scene's own lamps at the points; daylight leaves them out.
 report::YearLamps lamps_of(const DaylightOptions& options, const Scene& scene,
                            std::span<const Sensor> sensors, const LightMix& mix,
@@ -197,7 +183,17 @@ PreparedYear prepare_year(DaylightOptions& options, Progress& progress) {
   year.hours = sky_hours(weather, year.patches, render.load.ground);
   options.asked.ground = render.load.ground;
   options.asked.occupied = occupied_hours(year.hours, options.asked.occupancy);
-  grids = grids_of(options, scene, weather.hours.size(), progress);
+  find_rooms(options.places, scene);
+  grids = measuring::grids_at(scene, options.places, progress);
+  std::size_t sensors = 0;
+  for (const measuring::SensorGrid& grid : grids) sensors += grid.sensors.size();
+  const std::size_t hours = weather.hours.size(), states = states_of_blinds(options);
+  if (sensors * hours * states > limits::max_profile_values) {
+    throw UsageError(
+        fmt::format("{} points of {} hours in {} states are more than {} values; give "
+                    "fewer points",
+                    sensors, hours, states, limits::max_profile_values));
+  }
   take_windows(options, grids, scene);
   if (scene.portals.empty()) {
     progress.note(

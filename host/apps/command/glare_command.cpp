@@ -27,7 +27,6 @@
 #include "photile/errors.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/limits.hpp"
-#include "report/plan_surroundings.hpp"
 #include "report/tables.hpp"
 
 namespace photile::app {
@@ -41,7 +40,7 @@ struct GlareOptions {
   std::vector<std::string> outputs;  ///< .csv, .json
   ObserverOptions observers;
   std::vector<std::string> cameras;  ///< names or indices
-  PlaneOptions plane;
+  PlaceOptions places;
   std::vector<std::string> ratings;  ///< empty = all of observers, UGR alone of a grid
   std::string pictures;              ///< folder, "" = none
   std::string target;                ///< "" = none
@@ -52,7 +51,7 @@ std::vector<glare::Observer> observers_of(const GlareOptions& options, const Sce
                                           std::optional<measuring::PlaneLayout>& plane,
                                           Progress& progress) {
   std::vector<glare::Observer> all =
-      observers_at(options.observers, options.plane, scene, plane, progress);
+      observers_at(options.observers, options.places, scene, plane, progress);
   for (const auto& name : options.cameras) {
     const Camera& placed = choose_camera(scene, name);
     const Camera camera = in_world(scene, placed);
@@ -144,6 +143,7 @@ void run_glare(const CLI::App& command, GlareOptions& options) {
   const LightMix mix = mix_of(scene, render);
   tell_scene(scene, mix, render.load, progress);
   std::optional<measuring::PlaneLayout> plane;
+  find_rooms(options.places, scene);
   const std::vector<glare::Observer> observers = observers_of(options, scene, plane, progress);
   std::vector<Device> devices = devices_for(render, progress);
 
@@ -199,7 +199,7 @@ void add_places(CLI::App& command, GlareOptions& options) {
            "directions of view at each point of the grid", count_between(1, 360))
       ->capture_default_str()
       ->needs(grid);
-  add_plane_options(places, options.plane);
+  add_plane_options(places, options.places);
 }
 
 void add_rating(CLI::App& command, GlareOptions& options) {

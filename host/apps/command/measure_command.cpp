@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -28,7 +27,6 @@
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "report/daylight_tables.hpp"
 #include "report/tables.hpp"
 
@@ -41,16 +39,9 @@ struct MeasureOptions {
   MeasuringParameters parameters;
   PlaceOptions places;
   ObserverOptions observers;
-  bool walls = false, ceiling = false;
-  std::string cylindrical_at, semi_cylindrical_at;  ///< heights, "" = none
-  std::string target;                               ///< "" = none
+  std::string target;  ///< "" = none
   bool cylindrical = false;
   bool daylight_factor = false;
-
-  /// Whether surfaces or heights of the room are asked for.
-  bool of_room() const {
-    return walls || ceiling || !cylindrical_at.empty() || !semi_cylindrical_at.empty();
-  }
 };
 
 /// An overcast sky of 100 lux, so that lux are daylight factors in per cent. Errors: UsageError
@@ -74,50 +65,13 @@ LightMix mix_of_sky(const SceneLoadOptions& load, Scene& scene, const RenderOpti
   return mix;
 }
 
-/// Everything that the command line requests.
-std::vector<measuring::SensorGrid> grids_of(const MeasureOptions& options, const Scene& scene,
-                                            Progress& progress) {
-  std::vector<measuring::SensorGrid> grids = grids_at(options.places, scene);
-  const PlaneOptions& plane = options.places.plane;
-  const auto add = [&](std::vector<measuring::SensorGrid> more) {
-    for (auto& grid : more) grids.push_back(std::move(grid));
-  };
-  const auto at = [&](const std::string& height) {
-    measuring::WorkingPlane level = plane_at(plane, height);
-    level.north = options.render.load.situation.north_degrees;
-    return level;
-  };
-  if (options.walls) add(measuring::wall_grids(scene, at("floor")));
-  if (options.ceiling) add({measuring::ceiling_grid(scene, plane_at(plane, "floor"))});
-  if (!options.cylindrical_at.empty())
-    add({measuring::cylindrical_grid(scene, plane_at(plane, options.cylindrical_at))});
-  if (!options.semi_cylindrical_at.empty())
-    add(measuring::semi_cylindrical_grids(scene, at(options.semi_cylindrical_at)));
-  for (measuring::SensorGrid& grid : grids) {
-    if (grid.target.empty() || options.daylight_factor) grid.target = options.target;
-  }
-  const std::size_t sensors = clear_of_furniture(plane, scene, grids, progress);
-  if (sensors > limits::max_sensors) {
-    throw UsageError(fmt::format("{} points together, more than {}; measure fewer", sensors,
-                                 limits::max_sensors));
-  }
-  return grids;
-}
-
 /// Degrees clockwise from -z where the sky, the names of walls or the setting state it.
 std::optional<double> north_of(const MeasureOptions& options) {
   const SceneLoadOptions& load = options.render.load;
   const double north = load.situation.north_degrees;
-  const bool stated = north != 0 || load.sky || load.sun || load.situation.time || options.walls;
+  const bool stated =
+      north != 0 || load.sky || load.sun || load.situation.time || options.places.walls;
   return stated ? std::optional(north) : std::nullopt;
-}
-
-/// Warnings before anything is measured, a line each.
-std::vector<std::string> warnings_of(const Scene& scene, const LightMix& mix,
-                                     const std::vector<measuring::SensorGrid>& grids) {
-  std::vector<std::string> lines = doubts_of(scene, mix);
-  for (auto& line : measuring::doubts_of(scene, grids)) lines.push_back(std::move(line));
-  return lines;
 }
 
 /// UGR, of new luminaires.
@@ -142,7 +96,7 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   check(render.parameters);
   if (render.integrator == Integrator::path) refuse_photon_map_options(command);
   share_rendering(render);
-  if (options.places.empty() && !options.of_room()) {
+  if (options.places.empty()) {
     throw UsageError("nothing to measure; give --plane floor+0.75, --grid FILE or --points FILE");
   }
   measuring::parse_requirement(options.target);
@@ -167,7 +121,12 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   const LightMix mix =
       options.daylight_factor ? mix_of_sky(render.load, scene, render) : mix_of(scene, render);
   tell_scene(scene, mix, render.load, progress);
-  const std::vector<measuring::SensorGrid> grids = grids_of(options, scene, progress);
+  options.places.layout.north = render.load.situation.north_degrees;
+  find_rooms(options.places, scene);
+  std::vector<measuring::SensorGrid> grids = measuring::grids_at(scene, options.places, progress);
+  for (measuring::SensorGrid& grid : grids) {
+    if (grid.target.empty() || options.daylight_factor) grid.target = options.target;
+  }
   if (measuring::are_direct(grids)) {
     if (!options.observers.empty()) {
       throw UsageError(
@@ -178,11 +137,12 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   }
   std::optional<measuring::PlaneLayout> eyes;
   const std::vector<glare::Observer> observers =
-      observers_at(options.observers, options.places.plane, scene, eyes, progress);
+      observers_at(options.observers, options.places, scene, eyes, progress);
   outputs.check_names(grids);
   scene.portals = measuring::portals_of_grids(scene, grids, render.load.portals);
   std::vector<Device> devices = devices_for(render, progress);
-  std::vector<std::string> warnings = warnings_of(scene, mix, grids);
+  std::vector<std::string> warnings = doubts_of(scene, mix);
+  for (auto& line : measuring::doubts_of(scene, grids)) warnings.push_back(std::move(line));
   for (const std::string& line : warnings) progress.warn(line);
   for (const measuring::SensorGrid& grid : grids) {
     if (!grid.remark.empty()) warnings.push_back(fmt::format("{}: {}", grid.name, grid.remark));
@@ -208,6 +168,9 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
     }
   }
   outputs.check_picture(scene, progress);
+  nlohmann::ordered_json rooms;
+  for (const measuring::NamedRoom& room : options.places.rooms) rooms.emplace_back(room.facts);
+  if (!rooms.empty()) options.outputs.report.included.push_back({{"file", ""}, {"content", rooms}});
   nlohmann::ordered_json glare, results = options.outputs.report.included;
   if (!rated.empty()) {
     glare = report::glare_record(scene, rated, eyes);
@@ -216,8 +179,8 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
   const auto targets = measuring::judge_targets(measurement, observers_in(results));
   outputs.write(measurement,
                 {scene, mix, parameters, render.mood.mood, targets, glare,
-                 outputs.any_record()
-                     ? measuring::room_size(scene, plane_at(options.places.plane, "floor").inside)
+                 outputs.any_record() && options.places.rooms.size() < 2
+                     ? measuring::room_at(scene, options.places.layout.inside)
                      : std::nullopt,
                  loading::ground_reflectance(render.load), loading::sky_facts(render.load),
                  std::move(warnings), north_of(options), version_number()},
@@ -235,11 +198,11 @@ void run_measure(const CLI::App& command, MeasureOptions& options) {
 void add_places(CLI::App& command, MeasureOptions& options) {
   add_place_options(command, options.places);
   const OptionGroup places(command, "Places");
-  places.flag("--walls", options.walls, "a grid on each wall of the room");
-  places.flag("--ceiling", options.ceiling, "a grid on the ceiling of the room");
-  places.add("--cylindrical-at", options.cylindrical_at, "HEIGHT",
+  places.flag("--walls", options.places.walls, "a grid on each wall of the room");
+  places.flag("--ceiling", options.places.ceiling, "a grid on the ceiling of the room");
+  places.add("--cylindrical-at", options.places.cylindrical, "HEIGHT",
              "cylindrical illuminance at this height: floor+1.2 for people who sit");
-  places.add("--semi-cylindrical-at", options.semi_cylindrical_at, "HEIGHT",
+  places.add("--semi-cylindrical-at", options.places.semi_cylindrical, "HEIGHT",
              "semi-cylindrical illuminance at this height, towards four sides");
   add_observers_option(places, options.observers);
   places.add("--ugr-at", options.observers.height, "HEIGHT",

@@ -8,7 +8,6 @@
 #include "command/render_options.hpp"
 #include "common/ascii_text.hpp"
 #include "common/files.hpp"
-#include "image/layer_set.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "report/sheet.hpp"

@@ -8,7 +8,6 @@
 
 #include "command/option_group.hpp"
 #include "command/setting_options.hpp"
-#include "command/terminal_progress.hpp"
 #include "photile/errors.hpp"
 #include "render/render_plan.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "photile/layered_picture.hpp"
 #include "photile/load_scene.hpp"
-#include "photile/scene.hpp"
 
 namespace CLI {
 class App;

@@ -10,14 +10,12 @@
 
 #include "command/terminal_progress.hpp"
 #include "common/foreign_text.hpp"
-#include "common/json_object.hpp"
 #include "image/light_change.hpp"
 #include "image/light_layers.hpp"
 #include "loading/surroundings.hpp"
 #include "measuring/measurement.hpp"
-#include "measuring/working_plane.hpp"
+#include "measuring/rooms.hpp"
 #include "photile/defaults.hpp"
-#include "photile/limits.hpp"
 #include "report/record.hpp"
 #include "report/tables.hpp"
 #include "scene/panes.hpp"
@@ -186,50 +184,13 @@ json camera_json(const Camera& camera) {
           {"aspect_ratio", camera.aspect_ratio}};
 }
 
-/// Record and line of each room: of those that photile import has listed beside the scene, or else
-/// of those that are found in it.
-std::vector<std::pair<json, std::string>> rooms_in(const Scene& scene) {
-  std::vector<std::pair<json, std::string>> rooms;
-  const auto point = [](const glm::dvec3& p) {
-    return fmt::format("--inside={:.6g},{:.6g},{:.6g}", p.x, p.y, p.z);
-  };
-  std::filesystem::path file = scene.source;
-  if (!std::filesystem::exists(file.replace_extension(".rooms.json"))) {
-    for (const auto& [camera, room] : measuring::rooms_of(scene)) {
-      json record{{"area", room.area},
-                  {"sides", {room.sides.x, room.sides.y}},
-                  {"height", room.height},
-                  {"floor", room.floor}};
-      if (camera == none)
-        record["inside"] = components(room.inside);
-      else
-        record["camera"] = scene.cameras[camera].name;
-      rooms.emplace_back(
-          record, fmt::format("{:.1f} m2, {:.2f} x {:.2f} m, {:.2f} m high, floor at {:.2f} m, {}",
-                              room.area, room.sides.x, room.sides.y, room.height, room.floor,
-                              camera == none ? point(room.inside)
-                                             : "of camera " + scene.cameras[camera].name));
-    }
-    return rooms;
-  }
-  for (const json listed = read_input_json(file); const json& entry : listed) {
-    const JsonObject room(
-        entry, fmt::format("{}: room {}", file.string(), rooms.size() + 1),
-        {"name", "number", "long_name", "storey", "area", "height", "floor", "inside", "wall_band",
-         "outline", "holes", "plan", "required_illuminance", "global_id", "observers"});
-    const std::string name = room.text("name", "");
-    const double area = room.metres("area"), height = room.metres("height");
-    const double floor = room.number("floor", -limits::max_coordinate, limits::max_coordinate);
-    const glm::dvec3 inside = room.vector("inside");
-    rooms.emplace_back(json{{"name", name},
-                            {"area", area},
-                            {"height", height},
-                            {"floor", floor},
-                            {"inside", components(inside)}},
-                       fmt::format("{}: {:.1f} m2, {:.2f} m high, floor at {:.2f} m, {}",
-                                   one_line(name), area, height, floor, point(inside)));
-  }
-  return rooms;
+/// "room: Kitchen: 12.5 m2, 2.50 m high, floor at 0.00 m, --inside=1.00,1.20,3.00"
+std::string room_text(const measuring::NamedRoom& room) {
+  const auto fact = [&](const char* key) { return room.facts[key].get<double>(); };
+  return fmt::format(
+      "{}{}: {:.1f} m2, {:.2f} m high, floor at {:.2f} m, --inside={:.2f},{:.2f},{:.2f}",
+      room.name.starts_with("room ") ? "" : "room: ", one_line(room.name), fact("area"),
+      fact("height"), fact("floor"), room.inside.x, room.inside.y, room.inside.z);
 }
 
 }  // namespace
@@ -385,10 +346,8 @@ std::vector<std::string> info_warnings(const Scene& scene, const LightMix& mix) 
 
 std::vector<std::string> room_summary(const Scene& scene) {
   std::vector<std::string> lines;
-  for (const auto& [record, line] : rooms_in(scene)) lines.push_back("room: " + line);
-  if (lines.empty()) {
-    lines.emplace_back("room: none found with walls and a ceiling");
-  }
+  for (const auto& room : measuring::rooms_of(scene)) lines.push_back(room_text(room));
+  if (lines.empty()) lines.emplace_back("room: none found with walls and a ceiling");
   return lines;
 }
 
@@ -442,7 +401,7 @@ json scene_json(const Scene& scene, const LightMix& mix, const SceneLoadOptions&
     if (!known) stated.electrical_watts = 0;
     result["groups"].push_back(group_json(group, stated, photometric, mix.lumen_per_watt));
   }
-  for (const auto& [record, line] : rooms_in(scene)) result["rooms"].push_back(record);
+  for (const auto& room : measuring::rooms_of(scene)) result["rooms"].push_back(room.facts);
   for (const Camera& camera : scene.cameras) {
     result["cameras"].push_back(camera_json(in_world(scene, camera)));
   }

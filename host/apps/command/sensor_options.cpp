@@ -6,31 +6,32 @@
 #include <algorithm>
 #include <array>
 #include <sstream>
-#include <utility>
 
 #include "command/option_group.hpp"
 #include "common/files.hpp"
-#include "measuring/furniture.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 
 namespace photile::app {
 
-void add_plane_options(const OptionGroup& places, PlaneOptions& options) {
+void add_plane_options(const OptionGroup& places, PlaceOptions& options) {
+  CLI::Option* const inside = places
+                                  .add("--inside", options.inside, "X,Y,Z",
+                                       "point in the room; default: the first camera's room")
+                                  ->delimiter(',')
+                                  ->expected(3);
   places
-      .add("--inside", options.inside, "X,Y,Z",
-           "point in the room whose floor is used; default: the first camera's room")
-      ->delimiter(',')
-      ->expected(3);
+      .add("--rooms", options.room_names, "GLOB",
+           "rooms by name, as photile info lists them; * = all")
+      ->excludes(inside);
   places
-      .add("--wall-band", options.wall_band, "M", "width left out along the walls, m",
+      .add("--wall-band", options.layout.wall_band, "M", "width left out along the walls, m",
            number_between(0, limits::max_coordinate))
       ->capture_default_str();
-  places.add("--spacing", options.spacing, "M",
+  places.add("--spacing", options.layout.spacing, "M",
              "distance between points, m; default: that of EN 12464-1", positive_number());
   places.add("--clearance", options.clearance, "M",
-             "leave out points with a surface less than M metres in front of or behind them; "
-             "points inside furniture are always left out",
+             "leave out points with a surface less than M metres in front of or behind them",
              positive_number());
 }
 
@@ -39,9 +40,9 @@ void add_place_options(CLI::App& command, PlaceOptions& options) {
   places.repeat("--grid", options.planes, "FILE", "planes of points as JSON; repeatable");
   places.repeat("--points", options.points, "FILE",
                 "points in the format of Radiance and Honeybee; repeatable");
-  places.add("--plane", options.plane.height, "HEIGHT",
+  places.add("--plane", options.plane, "HEIGHT",
              "grid of EN 12464-1 over the floor: floor+0.75, or a height in metres");
-  add_plane_options(places, options.plane);
+  add_plane_options(places, options);
 }
 
 void note_places(const PlaceOptions& options) {
@@ -49,80 +50,14 @@ void note_places(const PlaceOptions& options) {
   for (const auto& file : options.points) note_input(file);
 }
 
-std::vector<measuring::SensorGrid> grids_at(const PlaceOptions& options, const Scene& scene) {
-  std::vector<measuring::SensorGrid> grids;
-  for (const auto& file : options.planes) {
-    glm::dvec3 task(0.0);  // a point above it, off the table
-    for (auto& grid : measuring::read_planes(file)) {
-      if (grid.role == measuring::GridRole::task) {
-        task = grid.sensors[grid.sensors.size() / 2].position + 0.05 * grid.layout->normal();
-      }
-      if (grid.role == measuring::GridRole::background) keep_in_room(scene, task, grid);
-      if (!grid.sensors.empty()) grids.push_back(std::move(grid));
-    }
-  }
-  for (const auto& file : options.points) grids.push_back(measuring::read_points(file));
-  if (!options.plane.height.empty()) grids.push_back(plane_of(options.plane, scene));
-  return grids;
-}
-
-measuring::WorkingPlane plane_at(const PlaneOptions& options, const std::string& height) {
-  measuring::WorkingPlane plane = measuring::parse_working_plane(height);
-  plane.wall_band = options.wall_band;
-  plane.spacing = options.spacing;
+void find_rooms(PlaceOptions& options, const Scene& scene) {
   if (!options.inside.empty()) {
-    plane.inside = glm::dvec3(options.inside[0], options.inside[1], options.inside[2]);
+    options.layout.inside = glm::dvec3(options.inside[0], options.inside[1], options.inside[2]);
   }
-  return plane;
-}
-
-measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene) {
-  return measuring::working_plane_grid(scene, plane_at(options, options.height));
-}
-
-namespace {
-
-/// "inside a solid or beyond the walls (3), less than 1 cm from a surface (2)", without reasons
-/// that are known.
-std::string reasons_of(const measuring::SensorGrid& grid, const measuring::CountedReasons& known) {
-  std::string text;
-  for (const auto& [reason, count] : measuring::counted_blanks(grid)) {
-    if (std::ranges::count(known, reason, &measuring::CountedReasons::value_type::first)) continue;
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", reason, count);
+  if (!options.room_names.empty()) {
+    options.rooms = measuring::rooms_named(scene, options.room_names);
+    options.layout.inside = options.rooms.front().inside;
   }
-  return text;
-}
-
-}  // namespace
-
-std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
-                               std::span<measuring::SensorGrid> grids, Progress& progress) {
-  std::size_t left = 0;
-  for (measuring::SensorGrid& grid : grids) {
-    if (!grid.remark.empty()) progress.warn(fmt::format("{}: {}", grid.name, grid.remark));
-    const std::size_t all = grid.sensors.size();
-    const measuring::CountedReasons known = measuring::counted_blanks(grid);
-    const std::size_t blank = measuring::leave_out_furniture(scene, options.clearance, grid,
-                                                             plane_at(options, "floor").inside);
-    if (grid.sensors.empty() && !(options.clearance > 0)) {
-      throw UsageError(fmt::format(
-          "{}: all {} points lie in objects or on surfaces; give another height or position",
-          grid.name, all));
-    }
-    if (grid.sensors.empty()) {
-      throw UsageError(fmt::format("--clearance {}: leaves none of the {} points of {}; reduce it",
-                                   options.clearance, all, grid.name));
-    }
-    left += grid.sensors.size();
-    for (const auto& [mark, count] : measuring::counted_marks(grid)) {
-      progress.warn(fmt::format("{}: {} of {} points: {}; they count in all results", grid.name,
-                                count, all, mark));
-    }
-    if (blank == 0) continue;
-    progress.note(fmt::format("{}: {} of {} points are left out: they lie {}", grid.name, blank,
-                              all, reasons_of(grid, known)));
-  }
-  return left;
 }
 
 void add_observers_option(const OptionGroup& places, ObserverOptions& options) {
@@ -131,7 +66,7 @@ void add_observers_option(const OptionGroup& places, ObserverOptions& options) {
       "eyes and directions of view whose glare is rated, lines x y z dx dy dz; repeatable");
 }
 
-std::vector<glare::Observer> observers_at(const ObserverOptions& options, PlaneOptions floor,
+std::vector<glare::Observer> observers_at(const ObserverOptions& options, const PlaceOptions& floor,
                                           const Scene& scene,
                                           std::optional<measuring::PlaneLayout>& plane,
                                           Progress& progress) {
@@ -144,12 +79,17 @@ std::vector<glare::Observer> observers_at(const ObserverOptions& options, PlaneO
     add(glare::observers_at(measuring::read_points(file), axes));
   }
   if (!options.height.empty()) {
-    floor.height = options.height;
-    measuring::SensorGrid grid = plane_of(floor, scene);
-    clear_of_furniture(floor, scene, std::span(&grid, 1), progress);
-    grid.name = "point";
-    plane = grid.layout;
-    add(glare::observers_on(grid, axes, options.directions));
+    auto grids = measuring::grids_at(scene,
+                                     {.plane = options.height,
+                                      .layout = floor.layout,
+                                      .rooms = floor.rooms,
+                                      .clearance = floor.clearance},
+                                     progress);
+    for (measuring::SensorGrid& grid : grids) {
+      grid.name = floor.rooms.empty() ? "point" : grid.name + ": point";
+      add(glare::observers_on(grid, axes, options.directions));
+    }
+    if (grids.size() == 1) plane = grids.front().layout;
   }
   if (2 * all.size() > limits::max_sensors) {
     throw UsageError(

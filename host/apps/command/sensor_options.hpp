@@ -1,13 +1,10 @@
 // Where a command measures, and by how many rays.
 #pragma once
 
-#include <cstddef>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "glare/measure_glare.hpp"
-#include "measuring/measurement.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "measuring/working_plane.hpp"
 #include "photile/defaults.hpp"
@@ -22,24 +19,16 @@ namespace photile::app {
 
 class OptionGroup;
 
-struct PlaneOptions {
-  std::string height;  ///< of the working plane; "" = none
-  double wall_band = defaults::wall_band;
-  double spacing = 0;          ///< metres; 0 = that of EN 12464-1
+/// Where a command measures.
+struct PlaceOptions : measuring::Places {
+  PlaceOptions() { layout.wall_band = defaults::wall_band; }
+
   std::vector<double> inside;  ///< a point in the room; empty = by the camera
-  double clearance = 0;        ///< metres from furniture; 0 = none
+  std::string room_names;      ///< a glob; "" = the one room that the above tells
 };
 
-/// Positions of sensors.
-struct PlaceOptions {
-  std::vector<std::string> planes, points;  ///< files
-  PlaneOptions plane;
-
-  bool empty() const { return planes.empty() && points.empty() && plane.height.empty(); }
-};
-
-/// Adds --inside, --wall-band, --spacing and --clearance.
-void add_plane_options(const OptionGroup& places, PlaneOptions& options);
+/// Adds --inside, --rooms, --wall-band, --spacing and --clearance.
+void add_plane_options(const OptionGroup& places, PlaceOptions& options);
 
 /// Adds --grid, --points, --plane and those of add_plane_options.
 void add_place_options(CLI::App& command, PlaceOptions& options);
@@ -47,20 +36,8 @@ void add_place_options(CLI::App& command, PlaceOptions& options);
 /// Notes the files that will be read. Errors: those of note_input.
 void note_places(const PlaceOptions& options);
 
-/// The grids of the files, and the working plane's. Errors: those of the readers and of plane_of.
-std::vector<measuring::SensorGrid> grids_at(const PlaceOptions& options, const Scene& scene);
-
-/// The plane that these options describe, at `height`. Errors: those of parse_working_plane.
-measuring::WorkingPlane plane_at(const PlaneOptions& options, const std::string& height);
-
-/// The grid over the floor. Errors: those of parse_working_plane and working_plane_grid.
-measuring::SensorGrid plane_of(const PlaneOptions& options, const Scene& scene);
-
-/// Makes points blank that lie inside solids or beyond the walls, and those nearer to furniture
-/// than --clearance, and prints how many there are. Returns how many are left of all grids. Errors:
-/// UsageError where no point of a grid is left.
-std::size_t clear_of_furniture(const PlaneOptions& options, const Scene& scene,
-                               std::span<measuring::SensorGrid> grids, Progress& progress);
+/// Looks for the rooms that the options name. Errors: those of rooms_named.
+void find_rooms(PlaceOptions& options, const Scene& scene);
 
 /// People whose glare is rated.
 struct ObserverOptions {
@@ -75,9 +52,11 @@ struct ObserverOptions {
 void add_observers_option(const OptionGroup& places, ObserverOptions& options);
 
 /// Those of the files, and those over the floor.
-///   plane   becomes that of the latter
-/// Errors: those of read_points and plane_of; UsageError where no point over the floor is free.
-std::vector<glare::Observer> observers_at(const ObserverOptions& options, PlaneOptions floor,
+///   floor   the rooms of the latter
+///   plane   becomes that of the latter where they are in one room
+/// Errors: those of the readers and of working_plane_grid; UsageError where no point over the floor
+/// is free.
+std::vector<glare::Observer> observers_at(const ObserverOptions& options, const PlaceOptions& floor,
                                           const Scene& scene,
                                           std::optional<measuring::PlaneLayout>& plane,
                                           Progress& progress);

@@ -8,7 +8,6 @@
 #include "gltf/nodes.hpp"
 #include "gltf/tiny_gltf.hpp"
 #include "photile/load_scene.hpp"
-#include "photile/scene.hpp"
 #include "reading/camera_path.hpp"
 #include "reading/import_context.hpp"
 

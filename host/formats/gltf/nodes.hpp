@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "gltf/tiny_gltf.hpp"
-#include "photile/load_scene.hpp"
 #include "reading/import_context.hpp"
 
 namespace photile::gltf {

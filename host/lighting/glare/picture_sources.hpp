@@ -6,7 +6,6 @@
 
 #include "glare/ratings.hpp"
 #include "photile/defaults.hpp"
-#include "photile/image.hpp"
 
 namespace photile::glare {
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <optional>
+#include <set>
 #include <unordered_map>
 
 #include "photile/ray_scene.hpp"
@@ -127,6 +129,54 @@ std::vector<Level> levels_of(const std::vector<Piece>& pieces, const RoomOf& roo
   return levels;
 }
 
+using Cell = std::pair<int, int>;
+
+/// Counterclockwise as seen from above.
+constexpr std::array<Cell, 4> cell_sides{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+
+Cell beyond(const Cell& cell, const Cell& side) {
+  return {cell.first + side.first, cell.second + side.second};
+}
+
+double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// The corners of walls of which a closed line has a point in each cell: straight parts of it, but
+/// for the short one that cuts off the corner where two of them meet.
+std::vector<glm::dvec2> corners_of(std::vector<glm::dvec2> line, double cell) {
+  constexpr double straight = 0.002, longest_cut = 1.5;  // cells
+  // What is farthest from anywhere is a corner, where a part may begin.
+  std::ranges::rotate(line, std::ranges::max_element(line, {}, [from = line.front()](auto& point) {
+                        return glm::distance(point, from);
+                      }));
+  line.push_back(line.front());
+  std::vector<glm::dvec2> ends{line.front()};
+  for (std::size_t first = 0, i = 1; i + 1 < line.size(); ++i) {
+    const glm::dvec2 way = glm::normalize(line[i + 1] - line[first]);
+    for (std::size_t k = first + 1; k <= i; ++k) {
+      if (std::abs(cross(way, line[k] - line[first])) < straight * cell) continue;
+      ends.push_back(line[first = i]);
+      break;
+    }
+  }
+  const auto end = [&](std::size_t i) { return ends[i % ends.size()]; };
+  // Where the parts before and after a short one meet.
+  const auto met_at = [&](std::size_t i) -> std::optional<glm::dvec2> {
+    const glm::dvec2 before = end(i) - end(i + ends.size() - 1), after = end(i + 2) - end(i + 1);
+    const double turn = cross(before, after);
+    const glm::dvec2 met = end(i) + cross(end(i + 1) - end(i), after) / turn * before;
+    const bool is_near = glm::distance(met, end(i)) < 2 * cell;
+    const bool is_cut = glm::distance(end(i), end(i + 1)) < longest_cut * cell &&
+                        std::min(glm::length(before), glm::length(after)) > longest_cut * cell;
+    return is_cut && is_near ? std::optional(met) : std::nullopt;
+  };
+  std::vector<glm::dvec2> corners;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const auto met = met_at(i);
+    if (met || !met_at(i + ends.size() - 1)) corners.push_back(met.value_or(end(i)));
+  }
+  return corners;
+}
+
 }  // namespace
 
 Floor find_floor(const RayScene& rays, const trace::PlanAxes& axes, const trace::Room* room) {
@@ -161,6 +211,19 @@ Floor find_floor(const RayScene& rays, const trace::PlanAxes& axes, const trace:
   return floor;
 }
 
+double ceiling_height(const RayScene& rays, const trace::PlanAxes& axes, const trace::Room& room) {
+  const trace::FlushDenormals flush_denormals;
+  std::vector<double> heights;
+  for (const glm::dvec3& place : room.positions()) {
+    if (const auto hit = trace::intersect(rays, glm::vec3(place), glm::vec3(axes.up)))
+      heights.push_back(glm::dot(trace::position_of(rays.scene(), *hit), axes.up));
+  }
+  if (heights.empty()) return room.cut_height();
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  return *middle;
+}
+
 RoomAtHeight::RoomAtHeight(const RayScene& rays, const trace::PlanAxes& axes,
                            const trace::Room& room, double height)
     : rays_(&rays),
@@ -189,14 +252,13 @@ RoomAtHeight::RoomAtHeight(const RayScene& rays, const trace::PlanAxes& axes,
     const glm::ivec2 cell(glm::round((axes.plan(position) - first_) / side_));
     add({cell.x, cell.y}, room.cut_height());
   }
-  constexpr std::array<Cell, 4> steps{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
   while (!next.empty()) {
     const Cell cell = next.back();
     next.pop_back();
     const double cut = cells_.at(cell);
     const glm::dvec3 from = middle_of(cell, cut);
-    for (const auto& [right, ahead] : steps) {
-      const Cell to{cell.first + right, cell.second + ahead};
+    for (const Cell& side : cell_sides) {
+      const Cell to = beyond(cell, side);
       const auto wall =
           trace::intersect(rays, glm::vec3(from), glm::vec3((middle_of(to, cut) - from) / side_));
       const glm::dvec3 end = wall ? trace::position_of(rays.scene(), *wall) : from;
@@ -233,12 +295,44 @@ bool RoomAtHeight::holds(const glm::dvec2& plan) const {
   return false;
 }
 
-double RoomAtHeight::area() const {
-  // Cells of which a part lies in the room are not counted: only their share of the rectangle is.
-  const glm::dvec2 counts =
-      glm::floor((high_ - first_) / side_) - glm::ceil((low_ - first_) / side_) + 1.0;
-  const glm::dvec2 sides = high_ - low_;
-  return static_cast<double>(cells_.size()) / (counts.x * counts.y) * sides.x * sides.y;
+glm::dvec2 RoomAtHeight::border_of(const Cell& cell, const Cell& side) const {
+  const glm::dvec3 from = middle_of(cell, cells_.at(cell));
+  const glm::dvec3 way = (middle_of(beyond(cell, side), cells_.at(cell)) - from) / side_;
+  const auto wall = trace::intersect(*rays_, glm::vec3(from), glm::vec3(way));
+  const glm::dvec3 end = wall ? trace::position_of(rays_->scene(), *wall) : from;
+  // Where no wall is near, the ceiling ends between the two cells.
+  return axes_.plan(wall && glm::distance(end, from) <= side_ ? end : from + 0.5 * side_ * way);
+}
+
+std::vector<std::vector<glm::dvec2>> RoomAtHeight::outlines() const {
+  const trace::FlushDenormals flush_denormals;
+  std::set<std::pair<Cell, std::size_t>> left;  // cells and those of their sides that are border
+  for (const auto& [cell, cut] : cells_) {
+    for (std::size_t side = 0; side < cell_sides.size(); ++side) {
+      if (!cells_.contains(beyond(cell, cell_sides[side]))) left.emplace(cell, side);
+    }
+  }
+  std::vector<std::vector<glm::dvec2>> rings;
+  while (!left.empty()) {
+    std::vector<glm::dvec2> border;
+    auto [cell, side] = *left.begin();
+    while (left.erase({cell, side}) != 0) {  // along the border, which is to the right
+      border.push_back(border_of(cell, cell_sides[side]));
+      const std::size_t along = (side + 1) % cell_sides.size();
+      const Cell next = beyond(cell, cell_sides[along]);
+      const Cell beside = beyond(next, cell_sides[side]);
+      if (!cells_.contains(next)) {
+        side = along;
+      } else if (cells_.contains(beside)) {
+        cell = beside;
+        side = (side + cell_sides.size() - 1) % cell_sides.size();
+      } else {
+        cell = next;
+      }
+    }
+    rings.push_back(corners_of(border, side_));
+  }
+  return rings;
 }
 
 std::vector<glm::dvec3> places_in_rooms(const RayScene& rays, const trace::PlanAxes& axes) {

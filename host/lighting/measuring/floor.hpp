@@ -23,6 +23,9 @@ struct Floor {
 /// The floor of `room`, or of the whole scene where that is null.
 Floor find_floor(const RayScene& rays, const trace::PlanAxes& axes, const trace::Room* room);
 
+/// The height along `up` that most of the ceiling has over the room's cut, metres.
+double ceiling_height(const RayScene& rays, const trace::PlanAxes& axes, const trace::Room& room);
+
 /// What a horizontal plane has of a room: all below the room's cut, and what sloped ceilings cover
 /// beside that, down to the plane. There the cut follows them, a tenth of the room's height below.
 class RoomAtHeight {
@@ -36,12 +39,14 @@ class RoomAtHeight {
   const glm::dvec2& low() const { return low_; }
   const glm::dvec2& high() const { return high_; }
   bool holds(const glm::dvec2& plan) const;
-  double area() const;  ///< m2
+  /// The corners of its plan: of its border counterclockwise, of holes in it clockwise.
+  std::vector<std::vector<glm::dvec2>> outlines() const;
 
  private:
   using Cell = std::pair<int, int>;  ///< columns to the right, rows ahead
 
   glm::dvec3 middle_of(const Cell& cell, double height) const;
+  glm::dvec2 border_of(const Cell& cell, const Cell& side) const;
 
   const RayScene* rays_;
   trace::PlanAxes axes_;

@@ -100,10 +100,10 @@ bool is_touched(const RayScene& rays, const Sensor& sensor) {
 /// The air of rooms, and that under the open sky.
 class OpenAir {
  public:
-  OpenAir(const RayScene& rays, const SensorGrid& grid, const std::optional<glm::dvec3>& inside)
-      : rays_(rays) {
+  OpenAir(const RayScene& rays, const SensorGrid& grid) : rays_(rays) {
     if (grid.chosen) {
-      if (auto room = trace::Room::meant(rays, axes_, inside)) rooms_.push_back(*std::move(room));
+      if (auto room = trace::Room::meant(rays, axes_, grid.inside))
+        rooms_.push_back(*std::move(room));
     }
     if (rooms_.empty()) add_rooms_around(grid);
   }
@@ -238,10 +238,20 @@ std::vector<std::uint8_t> in_things(const RayScene& rays, const OpenAir& air,
   return open;
 }
 
+/// "inside a solid or beyond the walls (3), less than 1 cm from a surface (2)", without reasons
+/// that are known.
+std::string reasons_of(const SensorGrid& grid, const CountedReasons& known) {
+  std::string text;
+  for (const auto& [reason, count] : counted_blanks(grid)) {
+    if (std::ranges::count(known, reason, &CountedReasons::value_type::first)) continue;
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", reason, count);
+  }
+  return text;
+}
+
 }  // namespace
 
-std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid& grid,
-                                const std::optional<glm::dvec3>& inside) {
+std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid& grid) {
   const RayScene rays(scene);
   const trace::FlushDenormals flush_denormals;
   const bool on_wall = grid.role == GridRole::wall || grid.role == GridRole::ceiling;
@@ -255,8 +265,7 @@ std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid
         parities_at(rays, {there.position + off_surface * there.normal, there.normal}));
   }
   const Parities usual = usual_parities(parities);
-  const std::vector<std::uint8_t> hidden =
-      in_things(rays, OpenAir(rays, grid, inside), grid, places);
+  const std::vector<std::uint8_t> hidden = in_things(rays, OpenAir(rays, grid), grid, places);
   std::vector<Sensor> sensors;
   std::vector<std::uint32_t> cells;
   std::vector<std::string> marks;
@@ -295,6 +304,35 @@ std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid
   grid.marks = std::move(marks);
   if (grid.layout) grid.layout->cells = std::move(cells);
   return left_out;
+}
+
+void clear_of_furniture(const Scene& scene, double clearance, bool may_lack,
+                        std::vector<SensorGrid>& grids, Progress& progress) {
+  for (SensorGrid& grid : grids) {
+    if (!grid.remark.empty()) progress.warn(fmt::format("{}: {}", grid.name, grid.remark));
+    const std::size_t all = grid.sensors.size();
+    if (all == 0) continue;
+    const CountedReasons known = counted_blanks(grid);
+    const std::size_t blank = leave_out_furniture(scene, clearance, grid);
+    if (grid.sensors.empty()) {
+      const std::string reason = fmt::format(
+          "{}: all {} points lie in objects or less than {} m from surfaces; give another height "
+          "or "
+          "position, or less clearance",
+          grid.name, all, std::max(clearance, touching));
+      if (!may_lack) throw UsageError(reason);
+      progress.warn(reason);
+      continue;
+    }
+    for (const auto& [mark, count] : counted_marks(grid)) {
+      progress.warn(fmt::format("{}: {} of {} points: {}; they count in all results", grid.name,
+                                count, all, mark));
+    }
+    if (blank == 0) continue;
+    progress.note(fmt::format("{}: {} of {} points are left out: they lie {}", grid.name, blank,
+                              all, reasons_of(grid, known)));
+  }
+  std::erase_if(grids, [](const SensorGrid& grid) { return grid.sensors.empty(); });
 }
 
 }  // namespace photile::measuring

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <glm/glm.hpp>
-#include <optional>
+#include <vector>
 
 #include "measuring/sensor_grid.hpp"
+#include "photile/progress.hpp"
 #include "photile/scene.hpp"
 
 namespace photile::measuring {
@@ -29,9 +29,13 @@ namespace photile::measuring {
 ///   in things, the room was misread, and no point counts as lying in one;
 /// - with a surface less than a centimetre beside or before them, such as the face of a partition:
 ///   half of their light is hidden by what they touch.
-///   inside   a point in the room that the grid is of; none = the first camera's
 /// Returns how many became blank.
-std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid& grid,
-                                const std::optional<glm::dvec3>& inside = std::nullopt);
+std::size_t leave_out_furniture(const Scene& scene, double clearance, SensorGrid& grid);
+
+/// The same of several grids, and tells how many points each loses and why.
+///   may_lack   whether a grid of which nothing is left is only told, and goes
+/// Errors: UsageError where nothing is left of a grid.
+void clear_of_furniture(const Scene& scene, double clearance, bool may_lack,
+                        std::vector<SensorGrid>& grids, Progress& progress);
 
 }  // namespace photile::measuring

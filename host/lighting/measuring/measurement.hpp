@@ -11,7 +11,6 @@
 #include "photile/device.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
-#include "photile/load_scene.hpp"
 #include "photile/sensors.hpp"
 
 namespace photile::measuring {

@@ -213,8 +213,9 @@ std::vector<JudgedTarget> judge_targets(const Measurement& measurement,
     auto& [requirement, judgements] = *target;
     for (Judgement& one : judge(measurement[i], requirement)) judgements.push_back(std::move(one));
     if (most[i] && requirement.glare > 0) {
-      judgements.push_back(
-          {grid.name, "UGR", requirement.glare, most[i]->ugr, true, most[i]->name});
+      std::string name = most[i]->name;  // "room 1: point 3"
+      if (name.starts_with(grid.name + ": ")) name.erase(0, grid.name.size() + 2);
+      judgements.push_back({grid.name, "UGR", requirement.glare, most[i]->ugr, true, name});
     }
   }
   return all;

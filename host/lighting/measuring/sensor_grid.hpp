@@ -54,6 +54,8 @@ struct SensorGrid {
   std::string target = {};  ///< its requirement, as parse_requirement reads it; "" = none
   std::string remark = {};  ///< what the user should know of its position; "" = nothing
   bool chosen = false;      ///< by the program, which leaves out points that are in the way
+  /// Of those a point in their room, in the scene file's world; none = the first camera tells it.
+  std::optional<glm::dvec3> inside = std::nullopt;
   /// Of each sensor why its value is doubtful, "" = it is not; empty = none is.
   std::vector<std::string> marks = {};
 };

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
 #include "common/ascii_text.hpp"
 #include "measuring/floor.hpp"
+#include "measuring/furniture.hpp"
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "scene/panes.hpp"
@@ -85,6 +85,7 @@ SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane) {
   }
   SensorGrid grid = grid_on_plane("working plane", in_world(scene, std::move(layout)));
   grid.chosen = true;
+  grid.inside = plane.inside;
   if (!room) {
     grid.remark =
         "no room with a ceiling is at the camera or in front of it: the widest floor of the scene "
@@ -133,7 +134,6 @@ namespace {
 constexpr double before_surface = 1e-3;  // metres that sensors lie before it
 constexpr double surface_slack = 0.05;   // metres that a wall may lie before or behind its plane
 constexpr double probed_from = 0.3;      // metres before a wall from where it is looked for
-constexpr double above_floor = 0.01;     // metres at which a room's size is taken
 constexpr int sides = 4;
 
 /// Metres to the first surface and whether it is glass.
@@ -166,11 +166,12 @@ trace::Room room_of(const RayScene& rays, const trace::PlanAxes& axes, const Wor
 /// The sensors of a plane that lie on a surface, just before it; the others are blank. Coordinates
 /// are the scene's, and become the world's.
 SensorGrid on_surface(const RayScene& rays, const std::string& name, const PlaneLayout& layout,
-                      const char* missing) {
+                      const WorkingPlane& plane, const char* missing) {
   const trace::FlushDenormals flush_denormals;
   const SensorGrid all = grid_on_plane(name, layout);
   SensorGrid grid{name, {}, layout};
   grid.chosen = true;
+  grid.inside = plane.inside;
   grid.layout->cells.clear();
   const Scene& scene = rays.scene();
   for (std::size_t i = 0; i < all.sensors.size(); ++i) {
@@ -194,77 +195,7 @@ SensorGrid on_surface(const RayScene& rays, const std::string& name, const Plane
   return grid;
 }
 
-/// The height of the ceiling over the cut, where most of it is.
-double ceiling_height(const RayScene& rays, const trace::PlanAxes& axes, const trace::Room& room) {
-  const trace::FlushDenormals flush_denormals;
-  std::vector<double> heights;
-  for (const glm::dvec3& place : room.positions()) {
-    if (const auto met = met_by(rays, place, axes.up)) heights.push_back(met->distance);
-  }
-  if (heights.empty()) return room.cut_height();
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  return room.cut_height() + *middle;
-}
-
-std::optional<RoomSize> size_of(const RayScene& rays, const trace::PlanAxes& axes,
-                                const trace::Room& room) {
-  const Floor floor = find_floor(rays, axes, &room);
-  if (floor.triangles.empty()) return std::nullopt;
-  const double in_world = floor.height + glm::dot(rays.scene().origin, axes.up);
-  const RoomAtHeight plan(rays, axes, room, floor.height + above_floor);
-  return RoomSize{plan.area(), ceiling_height(rays, axes, room) - floor.height, in_world,
-                  plan.high() - plan.low()};
-}
-
 }  // namespace
-
-std::optional<RoomSize> room_size(const Scene& scene, const std::optional<glm::dvec3>& inside) {
-  const trace::PlanAxes axes;
-  const RayScene rays(scene);
-  const auto room = trace::Room::meant(rays, axes, inside);
-  return room ? size_of(rays, axes, *room) : std::nullopt;
-}
-
-std::vector<std::pair<std::uint32_t, RoomSize>> rooms_of(const Scene& scene) {
-  constexpr std::uint32_t most_cameras = 16, most_rooms = 100;
-  std::vector<std::pair<std::uint32_t, RoomSize>> sizes;
-  if (scene.triangle_count() == 0) return sizes;
-  const trace::PlanAxes axes;
-  const RayScene rays(scene);
-  std::vector<trace::Room> rooms;
-  const auto add = [&](std::optional<trace::Room> room, std::uint32_t camera,
-                       const glm::dvec3& inside) {
-    const auto is_same = [&](const trace::Room& other) {
-      return glm::distance(other.low(), room->low()) + glm::distance(other.high(), room->high()) +
-                 std::abs(other.cut_height() - room->cut_height()) <
-             0.5;  // metres
-    };
-    if (!room || std::any_of(rooms.begin(), rooms.end(), is_same)) return false;
-    if (auto size = size_of(rays, axes, *room)) {
-      size->inside = position_in_world(scene, inside);
-      sizes.emplace_back(camera, *size);
-    }
-    rooms.push_back(*std::move(room));
-    return true;
-  };
-  for (std::uint32_t i = 0; i < scene.cameras.size() && i < most_cameras; ++i) {
-    add(trace::Room::of_camera(rays, axes, scene.cameras[i]), i, scene.cameras[i].position);
-  }
-  std::uint32_t tries = 0;
-  for (const glm::dvec3& place : places_in_rooms(rays, axes)) {
-    const auto holds = [&](const trace::Room& room) {
-      const double below = room.cut_height() - glm::dot(place, axes.up);
-      return below > 0 && room.holds(axes.plan(place)) &&
-             !trace::occluded(rays, glm::vec3(place), glm::vec3(place + below * axes.up));
-    };
-    if (std::any_of(rooms.begin(), rooms.end(), holds)) continue;
-    // A search that finds nothing new may have been a long one: ten of them end it.
-    tries += add(trace::Room::around(rays, axes, place), none, place) ? 1 : most_rooms / 10;
-    if (tries >= most_rooms) break;
-  }
-  return sizes;
-}
 
 std::vector<SensorGrid> wall_grids(const Scene& scene, const WorkingPlane& plane) {
   const trace::PlanAxes axes;
@@ -283,9 +214,10 @@ std::vector<SensorGrid> wall_grids(const Scene& scene, const WorkingPlane& plane
     const glm::dvec2 corner = middle + half * (outwards - along);
     const glm::dvec2 width = 2.0 * half * along;
     const auto in_space = [&](const glm::dvec2& p) { return p.x * axes.right + p.y * axes.ahead; };
-    SensorGrid grid = on_surface(
-        rays, fmt::format("{} wall", weather::compass_point(90 * side - plane.north)),
-        layout_of(in_space(corner) + floor * axes.up, in_space(width), height, plane), "no wall");
+    SensorGrid grid =
+        on_surface(rays, fmt::format("{} wall", weather::compass_point(90 * side - plane.north)),
+                   layout_of(in_space(corner) + floor * axes.up, in_space(width), height, plane),
+                   plane, "no wall");
     grid.role = GridRole::wall;
     if (!grid.sensors.empty()) grids.push_back(std::move(grid));
   }
@@ -302,7 +234,7 @@ SensorGrid ceiling_grid(const Scene& scene, const WorkingPlane& plane) {
                             ceiling_height(rays, axes, room) * axes.up;
   SensorGrid grid = on_surface(rays, "ceiling",
                                layout_of(origin, size.x * axes.right, -size.y * axes.ahead, plane),
-                               "no ceiling at that height");
+                               plane, "no ceiling at that height");
   grid.role = GridRole::ceiling;
   return grid;
 }
@@ -330,6 +262,75 @@ std::vector<SensorGrid> semi_cylindrical_grids(const Scene& scene, const Working
       sensor.facing = std::sin(turn) * axes.right + std::cos(turn) * axes.ahead;
     }
     grids.push_back(std::move(grid));
+  }
+  return grids;
+}
+
+bool Places::empty() const {
+  return planes.empty() && points.empty() && plane.empty() && !walls && !ceiling &&
+         cylindrical.empty() && semi_cylindrical.empty();
+}
+
+std::vector<SensorGrid> grids_at(const Scene& scene, const Places& places, Progress& progress) {
+  std::vector<SensorGrid> grids;
+  for (const std::string& file : places.planes) {
+    glm::dvec3 task(0.0);  // a point above it, off the table
+    for (SensorGrid& grid : read_planes(file)) {
+      if (grid.role == GridRole::task) {
+        task = grid.sensors[grid.sensors.size() / 2].position + 0.05 * grid.layout->normal();
+      }
+      if (grid.role == GridRole::background) keep_in_room(scene, task, grid);
+      if (!grid.sensors.empty()) grids.push_back(std::move(grid));
+    }
+  }
+  for (const std::string& file : places.points) grids.push_back(read_points(file));
+  const auto add_room = [&](WorkingPlane layout, const std::string& name) {
+    const auto at = [&](const std::string& height) {
+      const WorkingPlane level = parse_working_plane(height);
+      layout.above_floor = level.above_floor;
+      layout.height = level.height;
+      return layout;
+    };
+    const auto add = [&](const auto& make, const WorkingPlane& plane) {
+      std::vector<SensorGrid> made;
+      try {
+        made = make(scene, plane);
+      } catch (const InputError& error) {
+        if (name.empty()) throw;
+        made.emplace_back().remark = error.what();  // other rooms have their grids
+      }
+      for (SensorGrid& grid : made) grids.push_back(std::move(grid));
+    };
+    const std::size_t first = grids.size();
+    const auto one = [](const auto& make) {
+      return [make](const auto&... of) { return std::vector{make(of...)}; };
+    };
+    if (!places.plane.empty()) add(one(working_plane_grid), at(places.plane));
+    const bool has_plane = grids.size() > first;
+    if (places.walls) add(wall_grids, at("floor"));
+    if (places.ceiling) add(one(ceiling_grid), at("floor"));
+    if (!places.cylindrical.empty()) add(one(cylindrical_grid), at(places.cylindrical));
+    if (!places.semi_cylindrical.empty()) add(semi_cylindrical_grids, at(places.semi_cylindrical));
+    for (std::size_t i = first; !name.empty() && i < grids.size(); ++i) {
+      const bool is_main = grids[i].name.empty() || (has_plane && i == first);
+      grids[i].name = is_main ? name : name + ": " + grids[i].name;
+    }
+  };
+  WorkingPlane layout = places.layout;
+  for (const NamedRoom& room : places.rooms) {
+    layout.inside = room.inside;
+    add_room(layout, room.name);
+  }
+  if (places.rooms.empty()) add_room(layout, "");
+  clear_of_furniture(scene, places.clearance, !places.rooms.empty(), grids, progress);
+  std::size_t sensors = 0;
+  for (const SensorGrid& grid : grids) sensors += grid.sensors.size();
+  if (sensors == 0 && !places.empty()) {
+    throw UsageError("no point is left in any room; give another height, or a narrower wall band");
+  }
+  if (sensors > limits::max_sensors) {
+    throw UsageError(fmt::format("{} points together, more than {}; measure fewer", sensors,
+                                 limits::max_sensors));
   }
   return grids;
 }

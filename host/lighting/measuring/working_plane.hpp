@@ -1,13 +1,13 @@
 // The grids of EN 12464-1 in a room: over its floor, on its walls and ceiling, and on upright
-// cylinders.
+// cylinders; and all that a command asks for.
 #pragma once
 
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "measuring/rooms.hpp"
 #include "measuring/sensor_grid.hpp"
 #include "photile/scene.hpp"
 
@@ -22,22 +22,6 @@ struct WorkingPlane {
   /// A point in the room, metres in the file's world; none = the first camera tells the room.
   std::optional<glm::dvec3> inside;
 };
-
-/// The room that grids are laid in, as planners describe it.
-struct RoomSize {
-  double area = 0;        ///< m2 of its plan, with what lies under slopes
-  double height = 0;      ///< metres from its floor to most of its ceiling
-  double floor = 0;       ///< height of its floor in the file's world
-  glm::dvec2 sides{0.0};  ///< metres of the upright rectangle around its plan
-  /// Of rooms_of: the camera's position, or a point in the room, in the file's world.
-  glm::dvec3 inside{0.0};
-};
-/// Of the room around `inside`, or of the first camera's; none where the scene has no such room.
-/// Errors: UsageError where the point is in none.
-std::optional<RoomSize> room_size(const Scene& scene, const std::optional<glm::dvec3>& inside);
-/// Those of the first 16 cameras, with the camera's index, and others with walls all around, with
-/// `none`: each once, 100 at most.
-std::vector<std::pair<std::uint32_t, RoomSize>> rooms_of(const Scene& scene);
 
 /// "floor+0.75", "floor", or "1.2": a height in the file's world. Errors: UsageError.
 WorkingPlane parse_working_plane(const std::string& text);
@@ -55,10 +39,6 @@ WorkingPlane parse_working_plane(const std::string& text);
 /// UsageError where the given point is in no room.
 SensorGrid working_plane_grid(const Scene& scene, const WorkingPlane& plane);
 
-/// Leaves out the points that are not in the room around a place in the file's world; all stay
-/// where that is in none.
-void keep_in_room(const Scene& scene, const glm::dvec3& place, SensorGrid& grid);
-
 /// A grid on each of four walls, at the sides of the upright rectangle around the room's plan, from
 /// the floor to the ceiling, facing into the room; names say by the compass where the wall lies:
 /// "north wall". Points with no wall there, or glass, are
@@ -75,5 +55,27 @@ SensorGrid ceiling_grid(const Scene& scene, const WorkingPlane& plane);
 /// working_plane_grid.
 SensorGrid cylindrical_grid(const Scene& scene, const WorkingPlane& plane);
 std::vector<SensorGrid> semi_cylindrical_grids(const Scene& scene, const WorkingPlane& plane);
+
+/// Leaves out the points that are not in the room around a place in the file's world; all stay
+/// where that is in none.
+void keep_in_room(const Scene& scene, const glm::dvec3& place, SensorGrid& grid);
+
+/// Where a command measures.
+struct Places {
+  std::vector<std::string> planes = {}, points = {};                ///< files
+  std::string plane = {}, cylindrical = {}, semi_cylindrical = {};  ///< heights; "" = none
+  bool walls = false, ceiling = false;
+  WorkingPlane layout = {};           ///< of those in rooms, but their height
+  std::vector<NamedRoom> rooms = {};  ///< each has these; empty = the one that `layout` tells
+  double clearance = 0;               ///< metres from furniture
+
+  bool empty() const;
+};
+/// The grids of these places, clear of furniture: those of files, then of each room; names of the
+/// latter begin with the room's where there are rooms, and those that have no point of a grid are
+/// told. The background of a task ends at the walls of its room. Errors: those of the readers, of
+/// the above and of clear_of_furniture; UsageError where there are more than limits::max_sensors
+/// points, or none.
+std::vector<SensorGrid> grids_at(const Scene& scene, const Places& places, Progress& progress);
 
 }  // namespace photile::measuring

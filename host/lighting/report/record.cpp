@@ -251,8 +251,7 @@ Json run_json(const measuring::Measurement& measurement, const MeasureRun& run,
   if (!run.glare.is_null()) record["glare"] = run.glare;
   for (const auto& target : run.targets) record["targets"].push_back(target_json(target));
   if (const auto& room = run.room) {
-    record["room"] = {
-        {"area", room->area}, {"sides", {room->sides.x, room->sides.y}}, {"height", room->height}};
+    for (const char* key : {"area", "sides", "height"}) record["room"][key] = room->facts[key];
   }
   add_scene(run.scene, run.mix, record);
   record["grids"] = measurement_json(measurement);

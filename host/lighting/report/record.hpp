@@ -12,7 +12,7 @@
 
 #include "measuring/measurement.hpp"
 #include "measuring/requirements.hpp"
-#include "measuring/working_plane.hpp"
+#include "measuring/rooms.hpp"
 #include "report/false_colour.hpp"
 
 namespace photile::report {
@@ -63,7 +63,7 @@ struct MeasureRun {
   std::string mood = {};  ///< "" = none
   std::vector<measuring::JudgedTarget> targets = {};
   nlohmann::ordered_json glare = {};  ///< as glare_record; null = none
-  std::optional<measuring::RoomSize> room = std::nullopt;
+  std::optional<measuring::NamedRoom> room = std::nullopt;
   std::optional<double> ground = std::nullopt;  ///< its reflectance; none without a sky
   /// What the sky is: name and value.
   std::vector<std::pair<std::string, std::string>> sky = {};

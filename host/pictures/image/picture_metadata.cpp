@@ -11,7 +11,6 @@
 
 #include "common/ascii_text.hpp"
 #include "image/picture_checks.hpp"
-#include "photile/limits.hpp"
 
 namespace photile::image {
 namespace {

@@ -231,8 +231,8 @@ class Report:
         for grid in one.grids:  # all on pages that lie as the first plan needs
             grids.append(self._grid(grid, one.room, 0 if grids else above, page))
             page = grids[-1]["page"]
-        return {"name": one.room.name, "facts": facts, "judgements": judgements, "named": named, "parts": parts,
-                "grids": grids, "page": page}
+        return {"name": self._words(one.room.name), "facts": facts, "judgements": judgements, "named": named,
+                "parts": parts, "grids": grids, "page": page}
 
     def _grid(self, grid: dict[str, Any], room: Room | None = None, rows_above: int = 0,
               page: str = "") -> dict[str, Any]:
@@ -367,7 +367,7 @@ class Report:
         for row, factor in zip(rows, [*(part.maintenance for part in parts), 0] if own else ()):
             row.insert(3, f"{factor:g}" if factor else "")
         rooms = self._building.rooms
-        room_of = {int(lamp["number"]): one.room.name for one in rooms for lamp in one.lamps}
+        room_of = {int(lamp["number"]): self._words(one.room.name) for one in rooms for lamp in one.lamps}
         lamps = [[self._luminaires.tag(int(lamp["number"])), lamp["name"], lamp["kind"],
                   *([room_of.get(int(lamp["number"]), "")] if rooms else []), texts.place(lamp["position"]),
                   f"{texts.grouped(lamp['lumens'], 4)} lm"] for lamp in all_lamps]

@@ -18,7 +18,7 @@ farthest = 1e6  # metres of a corner from the origin, below which sums have no r
 
 
 class Room:
-    """A room by its outline, metres in the coordinates of a scene whose y points up.
+    """A room by its outline, which is level, metres in the coordinates of the scene.
 
     Raises the exceptions of indexing and arithmetic for what is not a room.
     """
@@ -29,18 +29,20 @@ class Room:
         self.outline, *holes = (np.array(ring, float).reshape(-1, 3)
                                 for ring in (entry["outline"], *entry.get("holes", [])))
         self.rings = [self.outline, *holes]
+        self.up = int(np.argmin(np.ptp(self.outline, axis=0)))  # y or z of a scene
         if len(self.outline) < 3 or not self.area > 0 or not (np.abs(np.vstack(self.rings)) < farthest).all():
             raise ValueError("a room has no area")
 
     def holds(self, places: Floats) -> NDArray[np.bool_]:
         """Whether each of several places is in the room, or in the void above its ceiling."""
-        above = places[:, 1] - self.floor
+        above = places[:, self.up] - self.floor
+        x, y = np.delete(places, self.up, axis=1).T
         inside = np.zeros(len(places), bool)
-        for ring in self.rings:
-            for (a, _, b), (c, _, d) in zip(ring, np.roll(ring, -1, axis=0)):
+        for ring in (np.delete(ring, self.up, axis=1) for ring in self.rings):
+            for (a, b), (c, d) in zip(ring, np.roll(ring, -1, axis=0)):
                 if b != d:  # each side of the outline that a ray along x crosses
-                    crosses = (b > places[:, 2]) != (d > places[:, 2])
-                    inside ^= crosses & (places[:, 0] < a + (places[:, 2] - b) / (d - b) * (c - a))
+                    crosses = (b > y) != (d > y)
+                    inside ^= crosses & (x < a + (y - b) / (d - b) * (c - a))
         held: NDArray[np.bool_] = inside & (above > -0.1) & (above < self.height + 0.5)
         return held
 
@@ -111,8 +113,10 @@ class Building:
         judgements = [each for target in targets for each in target["judgements"]]
         self._named = {"Em": "mean, %"} if record.get("unit") == "DF %" else {"Em": "Em, lux", "Emin": "Emin, lux"}
         self.rooms: list[RoomResults] = []
-        room_of = [next((room for room in rooms if 2 * np.count_nonzero(room.holds(some)) > len(some)), None)
-                   for some in points]
+        named = {room.name: room for room in rooms}
+        room_of = [named.get(grid["name"].rsplit(": ", 1)[0]) or
+                   next((room for room in rooms if 2 * np.count_nonzero(room.holds(some)) > len(some)), None)
+                   for grid, some in zip(grids, points)]
         self.others = [grid for grid, room in zip(grids, room_of) if room is None]
         for room in rooms:
             own = [grid for grid, one in zip(grids, room_of) if one is room]
@@ -157,8 +161,8 @@ class Building:
                  *(cell(one, figure) for figure in required),
                  "" if one.met is None else "met" if one.met else "not met"] for one, text in zip(self.rooms, use)]
         columns = ["room", "storey", "floor area, m²", *(["use"] if several else []), *map(heading, required), "target"]
-        return table("Rooms", columns, rows, words=(3, len(columns) - 1) if several else (len(columns) - 1,),
-                     names=(0, 1), kind="rooms")
+        return table("Rooms", columns, rows, words=(0, 3, len(columns) - 1) if several else (0, len(columns) - 1),
+                     names=(1,), kind="rooms")
 
     def facts(self) -> list[tuple[str, str]]:
         """Of all rooms together."""

@@ -14,6 +14,7 @@ least_glare = 10.0  # ratings below it have no meaning (CIE 117)
 _figure = "1,234.5"  # whose translation has the separators of a language
 _of_figures = re.compile(r"(?<=\d)[.,](?=\d)|, (?=[-\d])")
 _only_figures = re.compile(r"[-\d.,]+%?")
+_found_room = re.compile(r"room (\d+)(?:: (.+))?")
 _blank = re.compile(r"\{[^}]*\}")
 most_letters = 2000  # of a text that patterns are tried on
 
@@ -89,11 +90,15 @@ class Words:
         return self._filled(english) if text is None else text
 
     def _filled(self, english: str) -> str:
-        """A text by the first pattern that fits; the text itself without one."""
+        """A text by the first pattern that fits; the text itself without one. Grids of one of several rooms are named
+        "room 2: north wall"."""
+        if room := _found_room.fullmatch(english):
+            return f"{self('room')} {room[1]}" + (f": {self(room[2])}" if room[2] else "")
         for pattern, other in self._patterns if len(english) < most_letters else ():
             if found := pattern.fullmatch(english):
                 return _blank.sub("{}", other).format(*map(self._part, found.groups()))
-        return english
+        name, colon, part = english.rpartition(": ")
+        return name + colon + self(part) if colon else english
 
     def _part(self, text: str) -> str:
         return self.figure(text) if _only_figures.fullmatch(text) else self(text)
