@@ -295,6 +295,7 @@ class Page {
       H: ['#help', () => {
         this.tellFrames();
         find('#about').showModal();
+        find('#about-title').focus();  // rather than Close, which is at the end of a long dialog
       }],
       X: ['#adapt', () => this.adapt()],
       V: [null, () => this.setMode(this.renderer.mode === 2 ? 0 : 2)],
