@@ -3,7 +3,6 @@
 
 #include <catch2/catch.hpp>
 #include <chrono>
-#include <glm/gtc/constants.hpp>
 #include <thread>
 
 #include "common/files.hpp"

@@ -4,12 +4,15 @@
 #include <chrono>
 #include <thread>
 
+#include "loading/light_changes.hpp"
+#include "loading/surroundings.hpp"
 #include "photile/errors.hpp"
 #include "photile/renderer.hpp"
 #include "test_device.hpp"
 #include "test_scenes.hpp"
 #include "view/frame_worker.hpp"
 #include "view/photon_worker.hpp"
+#include "view/scene_loader.hpp"
 
 namespace photile::test {
 
@@ -250,6 +253,36 @@ TEST_CASE("ending in the middle of the work waits for no photons") {
   parameters.photons.emitted_photons = 400'000'000;  // minutes
   Viewer viewer({from_above(), 400, 300, false}, parameters, 1024);
   wait_for([&] { return !viewer.photons.progress().stage.empty(); });
+}
+
+// Which skies of a live page follow the hour.
+
+TEST_CASE("a place makes a sky of patches, unless another sky or sun is asked for") {
+  SceneLoadOptions options;
+  options.situation = {.site = Site{52.5, 13.4, 1}, .north_degrees = 30};
+  options.situation.time = LocalTime{2026, 6, 21, 9};
+  SceneLoadOptions overcast = options, sunny = options, nowhere;
+  const SkySituation taken = take_moving_sky(options);
+  CHECK(taken.site);
+  REQUIRE(taken.time);
+  CHECK(taken.time->month == 6);
+  REQUIRE(options.sky);
+  CHECK((options.sky->kind == SkyKind::patches && options.sky->patches == 145));
+  CHECK((!options.situation.site && !options.situation.time));
+  CHECK(options.situation.north_degrees == 30);
+  overcast.sky = Sky::parse("overcast=10000");
+  CHECK(!take_moving_sky(overcast).site);
+  CHECK(overcast.situation.time);
+  sunny.sun = Sun::parse("80000");
+  CHECK(!take_moving_sky(sunny).site);
+  CHECK((!take_moving_sky(nowhere).site && !nowhere.sky));
+  nowhere.sky = Sky::parse("patches=577");
+  CHECK(!take_moving_sky(nowhere).site);
+  CHECK(nowhere.sky->patches == 577);
+  Scene floor = plate(diffuse(glm::vec3(0.5f)), 1);
+  loading::add_surroundings(floor, nowhere);
+  loading::group_lights(floor, nowhere.light_groups);
+  CHECK(light_groups_of(floor).groups.size() == 1);
 }
 
 }  // namespace photile::test

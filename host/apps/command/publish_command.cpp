@@ -33,7 +33,7 @@
 #include "render/refinement.hpp"
 #include "render/render_session.hpp"
 #include "view/moods.hpp"
-#include "view/moving_sky.hpp"
+#include "view/scene_loader.hpp"
 
 namespace photile::app {
 namespace {

@@ -29,7 +29,7 @@
 #include "serve/live_room.hpp"
 #include "serve/web_server.hpp"
 #include "view/moods.hpp"
-#include "view/moving_sky.hpp"
+#include "view/scene_loader.hpp"
 #include "view/year_worker.hpp"
 
 namespace photile::app {
@@ -81,7 +81,7 @@ view::YearWorker::Measure year_of(const RenderOptions& render) {
   DaylightOptions year;
   year.render = render;
   year.render.load.situation.time.reset();
-  year.places.plane.height = year_plane;
+  year.places.plane = year_plane;
   year.seconds = year_seconds;
   return [year](const auto& tell, Progress& stop) { refine_year(year, tell, stop); };
 }

@@ -3,10 +3,10 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bake/baked_light.hpp"
-#include "photile/estimator.hpp"
 #include "photile/image.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/scene.hpp"
@@ -43,5 +43,9 @@ std::string page_text(const PublishedRoom& room);
 
 /// Writes the page. It loads nothing from elsewhere. Errors: OutputError.
 void write_page(const std::filesystem::path& file, const PublishedRoom& room);
+
+/// The page without a room: page/page.html with its style and scripts, joined when photile is
+/// built. It has @TITLE@, @ROOM@ and @DATA@ where these belong.
+std::string_view page_template();
 
 }  // namespace photile::publish

@@ -15,7 +15,6 @@
 #include "common/foreign_text.hpp"
 #include "image/glare.hpp"
 #include "report/printing.hpp"
-#include "view/snapshots.hpp"
 
 namespace photile::serve {
 namespace {

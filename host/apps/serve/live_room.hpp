@@ -24,7 +24,6 @@
 #include "publish/published_room.hpp"
 #include "serve/live_light.hpp"
 #include "serve/live_luminaires.hpp"
-#include "serve/live_pictures.hpp"
 #include "serve/web_server.hpp"
 #include "view/frame_worker.hpp"
 #include "view/moods.hpp"

@@ -13,7 +13,6 @@
 #include "serve/live_room.hpp"
 #include "serve/page_requests.hpp"
 #include "view/light_board.hpp"
-#include "view/snapshots.hpp"
 
 namespace photile::serve {
 namespace {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "image/white.hpp"
 #include "photile/camera.hpp"
 #include "photile/layered_picture.hpp"
 #include "photile/light_layers.hpp"
@@ -30,6 +32,11 @@ struct Frame {
   double lacking = 0;                 ///< share of the surface whose light is not yet final
   std::uint64_t emitted_photons = 0;  ///< paths of the maps it was estimated from
 };
+
+/// The frame with its layers, its camera and its white, as `render` writes EXR. Errors:
+/// OutputError.
+void write_frame(const std::filesystem::path& file, const Scene& scene, const Frame& frame,
+                 const LightMix& mix, const image::White& white);
 
 /// Power x tint of each layer: what quick frames are mixed by.
 std::vector<glm::vec3> scales_of(const LightMix& mix);

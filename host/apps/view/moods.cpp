@@ -14,6 +14,7 @@
 #include "photile/errors.hpp"
 #include "photile/limits.hpp"
 #include "scene/light_names.hpp"
+#include "writing/edited_scene.hpp"
 
 namespace photile::view {
 namespace {
@@ -192,6 +193,20 @@ void Moods::write(const std::map<std::string, Mood>& moods) const {
     }
   }
   write_file(file_, json_text(document, 2));
+}
+
+std::string write_mood(const Scene& scene, const SceneLoadOptions& load, LightBoard board,
+                       const Moods& moods, const std::string& mood) {
+  try {
+    moods.apply(mood, board);
+    const writing::EditedScene copy =
+        writing::write_edited_scene(scene.source, load, board.mix(), mood);
+    std::string told = fmt::format("{} is written", copy.file.filename().string());
+    for (const std::string& line : copy.left_out) told += "\n" + line;
+    return told;
+  } catch (const Error& error) {
+    return error.what();
+  }
 }
 
 }  // namespace photile::view

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "photile/load_scene.hpp"
 #include "view/light_board.hpp"
 
 namespace photile::view {
@@ -62,5 +63,10 @@ class Moods {
   std::filesystem::path file_;
   std::map<std::string, Mood> moods_;
 };
+
+/// A copy of the scene's file with its lamps in a mood. Returns a message: the name of the file and
+/// what could not be written, or what failed.
+std::string write_mood(const Scene& scene, const SceneLoadOptions& load, LightBoard board,
+                       const Moods& moods, const std::string& mood);
 
 }  // namespace photile::view

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "photile/defaults.hpp"
+
 namespace photile::view {
 
 SceneLoader::SceneLoader(std::filesystem::path scene, SceneLoadOptions options)
@@ -60,6 +62,23 @@ void SceneLoader::work(const std::stop_token& stop) {
     if (scene) loaded_ = Loaded{options_.luminaires_text, std::move(scene)};
     error_ = error;
   }
+}
+
+SkySituation take_moving_sky(SceneLoadOptions& options) {
+  SkySituation& situation = options.situation;
+  const bool placed = situation.site || !situation.weather.empty();
+  const bool asked = options.sky ? options.sky->kind == SkyKind::patches : placed;
+  if (!asked || options.sun || (situation.time && !placed)) return {};
+  if (!placed) {  // nothing moves its patches: they are one line of the lights
+    for (const char* const glob : {"sky_[0-9]*", "ground"}) {
+      options.light_groups.insert(options.light_groups.begin(), {glob, "sky"});
+    }
+  }
+  if (!options.sky) options.sky = Sky{SkyKind::patches, 0, 0, 0, defaults::view_sky_patches};
+  SkySituation taken;
+  taken.north_degrees = situation.north_degrees;  // the patches know it
+  std::swap(taken, situation);
+  return taken;
 }
 
 }  // namespace photile::view

@@ -1,4 +1,5 @@
-// A scene that is loaded again, with other luminaires, on its own thread.
+// How a live page loads its scene: under a sky that moves, and again, with other luminaires, on its
+// own thread.
 #pragma once
 
 #include <condition_variable>
@@ -47,5 +48,10 @@ class SceneLoader {
   std::exception_ptr error_;
   std::jthread thread_;  // last: it uses all of the above
 };
+
+/// Where options give a site or a weather file, or ask for patches, and for no other sky or sun:
+/// puts patches into the scene that is to be loaded, and returns the site and the time that move
+/// them. Without a site they are one group of lights.
+SkySituation take_moving_sky(SceneLoadOptions& options);
 
 }  // namespace photile::view
