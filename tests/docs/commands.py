@@ -177,7 +177,8 @@ def main():
                 words, start = small(words_of(command)), time.monotonic()
                 code, output = run(words, folder)
                 print(f"{page}: {time.monotonic() - start:5.1f} s: {shlex.join(words)}", flush=True)
-                if code != 0:
+                # A busy machine may still make the page when it is asked to end.
+                if code != 0 and not (words[1] == "view" and code == 130 and "http://" in output):
                     failures += 1
                     print(f"  exit code {code}\n{output}")
     if failures:
