@@ -21,6 +21,7 @@ MEASURES = {
     "kernels/report_borders.py": ["host/renderer/surface", "kernels/estimate", "kernels/surface"],
     "kernels/report_device.py": ["host/renderer", "kernels"],
     "kernels/workstation.py": ["host/renderer", "kernels"],
+    "lighting/buildings.py": ["host/lighting/measuring", "python/photile"],
     "lighting/daylight.py": ["host/lighting/daylight"],
     "lighting/daylight_hours.py": ["host/lighting/daylight"],
     "lighting/glare.py": ["host/lighting", "host/renderer"],
