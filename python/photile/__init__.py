@@ -22,7 +22,7 @@ from .errors import (
     UsageError,
 )
 from .glare_ratings import Glare, glare
-from .grids import Grid, grid, grids
+from .grids import Grid, grid, grids, rooms
 from .years import Daylight, daylight
 from .measuring import Illuminance, measure
 from .outlooks import SunHours, ViewOut, sun_hours, view_out
@@ -39,7 +39,7 @@ __all__ = [
     "Neighbours", "OutputError", "PhotonMaps", "Photons", "Picture", "Scene", "SunHours", "UsageError",
     "ViewOut",
     "daylight", "devices", "glare", "grid", "grids", "load", "measure", "neighbours", "png_of", "relight", "render",
-    "sun_hours", "test_devices", "trace", "view_out", "write_report",
+    "rooms", "sun_hours", "test_devices", "trace", "view_out", "write_report",
 ]
 
 

@@ -11,11 +11,12 @@ from typing import Any, NoReturn, Optional
 from .errors import InputError, UsageError
 from .report.command import Failure
 
-__all__ = ["Parser", "exit_code", "one_line"]
+__all__ = ["Parser", "exit_code", "of_form", "one_line"]
 
 _column = 30  # of the help, where what an option does begins
-_of_debian = {"numpy": "python3-numpy", "shapely": "python3-shapely"}
-_of_pypi = {"honeybee": "honeybee-radiance", "honeybee_radiance": "honeybee-radiance"}
+_of_debian = {"numpy": "python3-numpy", "photile": "python3-photile", "shapely": "python3-shapely"}
+_of_pypi = {"honeybee": "honeybee-radiance", "honeybee_radiance": "honeybee-radiance",
+            "photile": ". in the folder of photile's source"}
 
 
 def one_line(text: Any) -> str:
@@ -61,6 +62,16 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         raise UsageError(f"{message}; see {self.prog} --help")
+
+
+def of_form(form: str, read: Callable[[str], Any]) -> Callable[[str], Any]:
+    """A type for argparse, whose errors name the form of the value."""
+    def value(text: str) -> Any:
+        try:
+            return read(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"'{text}' is not {form}") from None
+    return value
 
 
 def _missing(module: str) -> str:

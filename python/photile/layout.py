@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from .arrangements import Arrangement, Designer, Room, most_luminaires
-from .command_line import Parser
+from .command_line import Parser, of_form
 from .report import command as report
 from .report.tables import targets_of
 
@@ -226,16 +226,6 @@ def _search(fields: Sequence[tuple[int, int, int]],
     return best
 
 
-def _of_form(form: str, read: Callable[[str], Any]) -> Callable[[str], Any]:
-    """A type for argparse, whose errors name the form of the value."""
-    def value(text: str) -> Any:
-        try:
-            return read(text)
-        except ValueError:
-            raise argparse.ArgumentTypeError(f"'{text}' is not {form}") from None
-    return value
-
-
 def _positive(text: str) -> float:
     value = float(text)
     if not 0 < value < math.inf:
@@ -274,7 +264,7 @@ def _point(text: str) -> list[float]:
 
 
 def _parser() -> Parser:
-    positive = _of_form("a number above 0", _positive)
+    positive = of_form("a number above 0", _positive)
     parser = Parser(
         "photile layout", "SCENE --luminaire FILE --target NAME -o FILE.json [OPTIONS] [-- OPTIONS]",
         "Place luminaires in a room: the smallest field that meets a target, or a given arrangement. "
@@ -297,18 +287,18 @@ def _parser() -> Parser:
     group = parser.add_argument_group("Arrangement")
     add = group.add_mutually_exclusive_group().add_argument
     most = f"at most {most_luminaires} luminaires"
-    add("--field", type=_of_form(f"NxM of {most}", _columns_and_rows), metavar="NxM",
+    add("--field", type=of_form(f"NxM of {most}", _columns_and_rows), metavar="NxM",
         help="N along the longest wall and M across; default: the smallest that meets the target")
-    add("--line", type=_of_form(f"a number of {most}", _count), metavar="N",
+    add("--line", type=of_form(f"a number of {most}", _count), metavar="N",
         help="N along the longest wall, in the middle of the room")
-    add("--circle", type=_of_form(f"N,RADIUS of {most}", _count_and_radius), metavar="N,RADIUS",
+    add("--circle", type=of_form(f"N,RADIUS of {most}", _count_and_radius), metavar="N,RADIUS",
         help="around the middle of the room, radius in m")
     group.add_argument(
         "--max-spacing", type=positive, metavar="M",
         help="greatest spacing of a field that is searched for, m; default: "
              f"{_spacing_criterion:g} times the height above the plane, a usual spacing criterion "
              "(as ANSI/IES LS-1 defines it); the data sheet may have the luminaire's own")
-    group.add_argument("--aim", type=_of_form("X,Y,Z, three numbers", _point), metavar="X,Y,Z",
+    group.add_argument("--aim", type=of_form("X,Y,Z, three numbers", _point), metavar="X,Y,Z",
                        help="point at which all luminaires aim; default: down")
     group.add_argument("--across", action="store_true",
                        help="C0 across the longest wall, or the radius, in place of along it")
@@ -317,7 +307,7 @@ def _parser() -> Parser:
     add("--suspension", type=positive, metavar="M", help="below the ceiling, m")
     add = parser.add_argument_group("Luminaire").add_argument
     add("--lumens", type=positive, metavar="LM", help="flux of each; default: as in its file")
-    add("--size", type=_of_form("LxW, two numbers above 0", _length_and_width), metavar="LxW",
+    add("--size", type=of_form("LxW, two numbers above 0", _length_and_width), metavar="LxW",
         help="luminous opening along C0 and across, m; default: as in its file")
     add("--name", metavar="NAME", help="name of the light; default: that of its file")
     return parser

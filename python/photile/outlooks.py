@@ -55,6 +55,8 @@ class SunHours:
     level : str
         "none", "minimum" (1.5 h), "medium" (3 h) or "high" (4 h), by the point with the most hours; "" of
         a day that is not one from 1 February to 21 March.
+    date : str
+        The day, "YYYY-MM-DD".
     """
 
     points: Doubles
@@ -63,6 +65,14 @@ class SunHours:
     times: NDArray[np.datetime64]
     sunlit: Flags
     level: str
+    date: str
+
+    @property
+    def _content(self) -> dict[str, Any]:
+        """What ``photile outlook`` writes, and reports show."""
+        places = [{"position": place, "hours": hours}
+                  for place, hours in zip(self.points.tolist(), self.hours.tolist())]
+        return {"sunlight": {"date": self.date, "level": self.level, "places": places}}
 
     def __len__(self) -> int:
         return len(self.hours)
@@ -91,6 +101,8 @@ class ViewOut:
         horizon where the scene ends.
     levels : (n,) array of str
         "none", "minimum", "medium" or "high": the lowest by angle, distance and layers of one window.
+    name : str
+        Of the grid.
     """
 
     points: Doubles
@@ -100,6 +112,16 @@ class ViewOut:
     landscape: Flags
     ground: Flags
     levels: NDArray[np.str_]
+    name: str = "points"
+
+    @property
+    def _content(self) -> dict[str, Any]:
+        """What ``photile outlook`` writes, and reports show."""
+        distance = float(np.median(self.distance)) if len(self) else 0.0
+        return {"view_out": [{"grid": self.name, "points": len(self), "level": self.level,
+                              "angle": float(np.median(self.angle)) if len(self) else 0.0,
+                              "distance": distance if np.isfinite(distance) else None,
+                              "levels": {level: int(np.sum(self.levels == level)) for level in LEVELS}}]}
 
     @property
     def level(self) -> str:
@@ -204,7 +226,7 @@ def sun_hours(
     parts = tuple(int(part) for part in day.split("-")[1:])
     level = LEVELS[_rank(of_points.max(initial=0.0), _HOURS)] if _DAYS[0] <= parts <= _DAYS[1] else ""
     return SunHours(places, of_points, float(each * sunlit.any(axis=0).sum()),
-                    start + np.round(3600 * hours[high]).astype("timedelta64[s]"), sunlit, level)
+                    start + np.round(3600 * hours[high]).astype("timedelta64[s]"), sunlit, level, day)
 
 
 def view_out(
@@ -259,7 +281,8 @@ def view_out(
     angle, distance, sky, landscape, ground, layers = columns
     ranks = [min(_rank(a, _ANGLES), _rank(d, _DISTANCES), _rank(n, _LAYERS))
              for a, d, n in zip(angle, distance, layers)]
-    return ViewOut(places, angle, distance, sky, landscape, ground, np.array([LEVELS[rank] for rank in ranks]))
+    return ViewOut(places, angle, distance, sky, landscape, ground, np.array([LEVELS[rank] for rank in ranks]),
+                   points.name if isinstance(points, Grid) else "points")
 
 
 def _rank(value: float, least: Sequence[float]) -> int:

@@ -15,14 +15,16 @@ import numpy as np
 from . import _photile
 from .errors import InputError, OutputError, UsageError
 from .glare_ratings import Glare
+from .grids import rooms
 from .measuring import Illuminance
+from .outlooks import SunHours, ViewOut
 from .report import command
 from .scenes import File
 from .years import Daylight
 
 __all__ = ["write_report"]
 
-Results = Union[Illuminance, Glare, Daylight]
+Results = Union[Illuminance, Glare, Daylight, SunHours, ViewOut]
 
 
 def write_report(
@@ -44,7 +46,7 @@ def write_report(
     ----------
     file : path
         Ends in .html, .pdf, .svg or .dxf.
-    *results : Illuminance, Glare, Daylight, or sequences of these
+    *results : Illuminance, Glare, Daylight, ViewOut, SunHours, or sequences of these
         Illuminances are those of one call of `measure`; daylight factors may stand beside them. A year, or
         glare, may stand alone.
     target : str
@@ -72,11 +74,12 @@ def write_report(
     listed: list[Results] = []
     for each in results:
         listed.extend(each if isinstance(each, Sequence) else [each])
-    if not all(isinstance(each, (Illuminance, Glare, Daylight)) for each in listed):
-        raise UsageError("results: give what photile.measure, photile.glare or photile.daylight returned")
+    if not all(isinstance(each, (Illuminance, Glare, Daylight, SunHours, ViewOut)) for each in listed):
+        raise UsageError("results: give what photile.measure, glare, daylight, sun_hours or view_out returned")
     record, beside = _record(listed, target)
     about = {"project": project, "client": client, "designer": designer, "language": language,
-             "logo": "" if logo is None else _logo(os.fspath(logo)), "included": _included(beside)}
+             "logo": "" if logo is None else _logo(os.fspath(logo)),
+             "included": [*_rooms_of(listed), *_included(beside)]}
     record["report"] = {**record.get("report", {}), **about}
     with tempfile.TemporaryDirectory() as folder:
         content = pathlib.Path(folder, "results.json")
@@ -95,7 +98,7 @@ def _record(results: list[Results], target: str) -> tuple[dict[str, Any], list[R
     lux = [each for each in measured if each.unit == "lx"]
     main = lux or measured
     if not main:
-        return _record_alone([each for each in results if not isinstance(each, Illuminance)], target), results
+        return _record_alone([each for each in results if isinstance(each, (Glare, Daylight))], target), results
     return _record_of(main, results, target), [each for each in results if not any(each is one for one in main)]
 
 
@@ -126,7 +129,6 @@ def _record_of(measured: list[Illuminance], results: list[Results], target: str)
         "ground": ground,
         "sky": list(sky),
         "north": scene._north if stated else None,
-        "inside": measured[0].grid._inside,
     })
     # Photometric files of a list have absolute names, which tell a reader nothing.
     for entry, name in [*((lamp, "file") for lamp in record["luminaires"]),
@@ -136,8 +138,17 @@ def _record_of(measured: list[Illuminance], results: list[Results], target: str)
     return record
 
 
+def _rooms_of(results: list[Results]) -> list[dict[str, Any]]:
+    """The rooms that grids are named after."""
+    measured = [each for each in results if isinstance(each, Illuminance) and each.grid._of_room]
+    names = {part for each in measured for part in (each.grid.name, each.grid.name.rsplit(": ", 1)[0])}
+    found = rooms(measured[0]._run.scene) if measured else []
+    own = [room for room in found if room["name"] in names]
+    return [{"file": "rooms", "content": own}] if own else []
+
+
 def _included(results: list[Results]) -> list[dict[str, Any]]:
-    contents: list[Any] = [each._content for each in results if isinstance(each, Glare)]
+    contents: list[Any] = [each._content for each in results if isinstance(each, (Glare, SunHours, ViewOut))]
     factors = [each for each in results if isinstance(each, Illuminance)]
     years = [each.figures for each in results if isinstance(each, Daylight)]
     contents += [_record_of(factors, [], "")] if factors else []

@@ -98,7 +98,8 @@ MOOD = {"photile_moods": 1, "moods": {"dusk": {"sky": {"power": 5e5, "unit": "lm
 
 @reports
 @pytest.mark.parametrize("ending, options, loading, measuring, reporting", [
-    ("html", ["--sky", "overcast=9000", "--target", "office-desk", "--project", "P"], {"sky": SKY}, {}, DESK),
+    ("html", ["--sky", "overcast=9000", "--target", "office-desk", "--project", "P", "--rooms", "*"], {"sky": SKY}, {},
+     DESK),
     ("html", ["--sky", "overcast=9000", "--target", "escape-route"], {"sky": SKY}, {"target": "escape-route"}, {}),
     ("html", ["--sky", "overcast=9000", "--mood", "dusk", "--light", "sky=x2"], {"sky": SKY},
      {"mood": "dusk", "light": {"sky": 2}}, {}),
@@ -109,7 +110,8 @@ def test_a_report_is_that_of_the_command(tmp_path, ending, options, loading, mea
     of_command(tmp_path, "measure", ROOM, "--plane", "floor+0.75", "--photons", 5000, *options, *moods,
                "-o", tmp_path / f"a.{ending}")
     room = photile.load(ROOM, **loading)
-    measured = photile.measure(room, photile.grids(room, "floor+0.75"), photons_emitted=5000, **QUICK, **measuring,
+    grids = photile.grids(room, "floor+0.75", rooms="*" if "--rooms" in options else "")
+    measured = photile.measure(room, grids, photons_emitted=5000, **QUICK, **measuring,
                                **({"moods": moods[1]} if moods else {}))
     photile.write_report(tmp_path / f"b.{ending}", measured, **reporting)
     assert (tmp_path / f"b.{ending}").read_bytes() == (tmp_path / f"a.{ending}").read_bytes()
@@ -123,8 +125,11 @@ def test_glare_and_daylight_factors_stand_in_a_report(tmp_path):
     assert f"<td>{np.nanmax(rated.ugr):.1f} " in (tmp_path / "a.html").read_text()
     lux, factors = (photile.measure(room, photile.grids(room, "floor+0.75"), photons_emitted=5000, **QUICK, **more)
                     for more in ({}, {"daylight_factor": True}))
-    photile.write_report(tmp_path / "a.html", lux, factors)
-    assert f"<td>{factors[0].lux.mean():.2f}%</td>" in (tmp_path / "a.html").read_text() and factors[0].unit == "%"
+    outlook = photile.view_out(room, lux[0].grid), photile.sun_hours(room, "2026-03-20", site=(50, 0, 0))
+    photile.write_report(tmp_path / "a.html", lux, factors, *outlook)
+    page = (tmp_path / "a.html").read_text()
+    assert f"<td>{factors[0].lux.mean():.2f}%</td>" in page and factors[0].unit == "%"
+    assert "View out (EN 17037)" in page and "Sunlight (EN 17037)" in page
 
 
 def test_the_sun_stands_where_the_hour_and_the_site_have_it():

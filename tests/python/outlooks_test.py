@@ -1,8 +1,11 @@
 """View out and hours of sun of EN 17037, against geometry that hides a known part."""
 
+import json
+import pathlib
+
 import numpy as np
 import pytest
-from conftest import quad
+from conftest import quad, run_photile
 
 import photile
 
@@ -87,3 +90,15 @@ def test_what_faces_upwards_is_ground_and_what_is_near_is_no_layer():
     assert over.ground.all() and over.landscape.all() and over.level == "minimum"
     assert not (behind.ground.any() or behind.landscape.any()) and behind.level == "none"
     assert behind.distance == pytest.approx(5, rel=0.02)
+
+
+def test_the_command_rates_rooms_of_a_file_as_the_functions_do(tmp_path):
+    file, site = pathlib.Path(__file__).parents[2] / "scenes/office/office.gltf", (50, 0, 0)
+    words = ("outlook", file, "--rooms", "room 1", "--date", "2026-03-20", "-o", tmp_path / "a.json")
+    ran = run_photile(*words, "--site=50,0,0", check=True)
+    scene = photile.load(file, sky=("uniform", 1))
+    grid, = photile.grids(scene, "floor+1.2", rooms="room 1")
+    view, sun = photile.view_out(scene, grid), photile.sun_hours(scene, "2026-03-20", site=site)
+    assert json.loads((tmp_path / "a.json").read_text()) == {**view._content, **sun._content}
+    assert f"room 1: view out {view.level}" in ran.stdout and "sun on 2026-03-20" in ran.stdout
+    assert "--date" in run_photile(*words).stderr

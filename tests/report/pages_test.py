@@ -27,6 +27,9 @@ PLANE = {"origin": [0, 1.2, 0], "u": [3, 0, 0], "v": [0, 0, -2], "columns": 3, "
 # An L of 12 m2 around the grid of the record, with a foot beyond it.
 L_ROOM = {"name": "101", "storey": "Level <1>", "area": 12, "height": 2.5, "floor": 0, "holes": [],
           "outline": [[x, 0, z] for x, z in ((0, 0), (3, 0), (3, -2), (9, -2), (9, -3), (0, -3))]}
+OUTLOOK = {"view_out": [{"grid": "102", "points": 6, "level": "none", "angle": 20.5, "distance": distance,
+                         "levels": {"none": 3, "minimum": 1, "medium": 2, "high": 0}} for distance in (7.5, None)],
+           "sunlight": {"date": "2026-03-21", "level": "medium", "places": [{"position": [1, 2, 3], "hours": 3.25}]}}
 FACTORS = {"unit": "DF %", "grids": [grid_of("desks", [1, 3, 3, 5], 2, 2)]}
 FAR_ROOM = {**L_ROOM, "name": "102", "floor": 10}
 
@@ -117,7 +120,7 @@ def full(record):
     results = pathlib.Path(__file__).parent / "results"
     contents = [json.loads((results / name).read_text()) for name in ("observers.json", "planes.json")]
     record["report"] |= {"project": "P", "client": "C", "designer": "D", "included": [
-        {"file": "", "content": content} for content in (*contents, [L_ROOM, FAR_ROOM], FACTORS)]}
+        {"file": "", "content": content} for content in (*contents, [L_ROOM, FAR_ROOM], FACTORS, OUTLOOK)]}
     return record
 
 

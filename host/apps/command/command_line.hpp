@@ -35,10 +35,10 @@ inline ExitCode exit_code_of(const Error& error) {
 
 using AddCommand = void(CLI::App& photile);
 AddCommand add_import_command, add_render_command, add_relight_command, add_compare_command,
-    add_measure_command, add_daylight_command, add_glare_command, add_layout_command,
-    add_trade_command, add_devices_command, add_info_command, add_settings_command, add_ies_command,
-    add_validate_command, add_walk_command, add_trace_command, add_view_command, add_bake_command,
-    add_publish_command, add_help_command;
+    add_measure_command, add_daylight_command, add_glare_command, add_outlook_command,
+    add_layout_command, add_trade_command, add_devices_command, add_info_command,
+    add_settings_command, add_ies_command, add_validate_command, add_walk_command,
+    add_trace_command, add_view_command, add_bake_command, add_publish_command, add_help_command;
 
 /// "0.1.0"
 std::string version_number();

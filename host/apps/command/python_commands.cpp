@@ -62,4 +62,8 @@ void add_layout_command(CLI::App& photile) {
   add_python_command(photile, "layout", "Place luminaires in a room so that they meet a target");
 }
 
+void add_outlook_command(CLI::App& photile) {
+  add_python_command(photile, "outlook", "Rate the view out and the hours of sun by EN 17037");
+}
+
 }  // namespace photile::app

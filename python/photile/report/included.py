@@ -1,5 +1,5 @@
-"""Results of ``photile glare``, ``photile daylight`` and ``photile measure --daylight-factor`` in a report, as
-tables and maps of their planes, and the rooms of a building that ``photile import`` writes."""
+"""Results of ``photile glare``, ``daylight``, ``outlook`` and ``measure --daylight-factor`` in a report, as tables and
+maps of their planes, and the rooms of a building that ``photile import`` writes."""
 
 from __future__ import annotations
 
@@ -76,6 +76,24 @@ def _year_table(grids: list[dict[str, Any]]) -> Table:
                   "IES LM-83"], rows, words=(0, 4, 6), kind="figures",
                  remark="IES LM-83-12: sDA is accepted from 55% of the points on and preferred from 75% on. "
                         "ASE, of the windows without blinds, is at most 10%.")
+
+
+def _view_table(views: list[dict[str, Any]]) -> Table:
+    rows = [[one["grid"], str(one["points"]), f"{one['angle']:.0f}\u00b0",
+             "no end" if one["distance"] is None else f"{one['distance']:.0f} m",
+             *(str(one["levels"][level]) for level in _levels), one["level"]] for one in views]
+    return table("View out (EN 17037)", ["grid", "points", "sight angle", "distance", *_levels, "level"], rows,
+                 words=(0, 3, 7), kind="figures",
+                 remark="Angle and distance are medians of the points; of each level the points are counted. "
+                        "The level is what 75% of them have.")
+
+
+def _sunlight_table(sun: dict[str, Any]) -> Table:
+    most = max((place["hours"] for place in sun["places"]), default=0.0)
+    rows = [[str(number), texts.place(place["position"]), f"{place['hours']:.1f}",
+             sun["level"] if place["hours"] == most else ""] for number, place in enumerate(sun["places"], 1)]
+    return table("Sunlight (EN 17037)", ["window", "position (x, y, z), m", "hours of sun", "level"], rows,
+                 words=(3,), kind="figures", remark=f"The sun of {sun['date']} in a cloudless sky.")
 
 
 def _share_of(values: list[float], least: float) -> float:
@@ -239,6 +257,11 @@ class Included:
             self.maps += [one for grid in content for one in _year_maps(grid)]
             self.kilowatt_hours += sum(float(lamp["kilowatt_hours"])
                                        for lamp in (content[0].get("lamps", []) if content else []))
+        elif "view_out" in content or "sunlight" in content:
+            if "view_out" in content:
+                self.tables.append(_view_table(content["view_out"]))
+            if "sunlight" in content:
+                self.tables.append(_sunlight_table(content["sunlight"]))
         elif content.get("unit") == "DF %":
             self.tables.append(factor_table(content["grids"], self._outdoors))
             self.maps += _factor_maps(content["grids"])
