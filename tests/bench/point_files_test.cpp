@@ -4,7 +4,6 @@
 #include <random>
 
 #include "file_bytes.hpp"
-#include "photile/errors.hpp"
 #include "photile/load_scene.hpp"
 #include "source_folder.hpp"
 #include "structures/structure.hpp"

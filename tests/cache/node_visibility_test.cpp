@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "cache/node_sources.hpp"
-#include "photile/defaults.hpp"
 #include "trace/ray_query.hpp"
 
 namespace photile::test {

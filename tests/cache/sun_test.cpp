@@ -6,7 +6,6 @@
 #include <string>
 
 #include "gathering.hpp"
-#include "photile/defaults.hpp"
 #include "photile/scene.hpp"
 #include "suns.hpp"
 #include "trace/bright_surface.hpp"

@@ -8,7 +8,6 @@
 
 #include "oracle/rounding.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "photile/neighbours.h"
 #include "test_device.hpp"
 

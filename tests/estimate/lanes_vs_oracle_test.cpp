@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "estimate/specialisation.hpp"
 #include "estimates_comparison.hpp"
 #include "neighbour_comparison.hpp"
 #include "oracle/clipped_area.hpp"

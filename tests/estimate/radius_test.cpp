@@ -5,7 +5,6 @@
 #include "estimates_comparison.hpp"
 #include "oracle/clipped_area.hpp"
 #include "photile/errors.hpp"
-#include "photile/limits.hpp"
 #include "photile/neighbour_groups.hpp"
 #include "photile/sensors.hpp"
 #include "photon_sets.hpp"

@@ -4,7 +4,6 @@
 #include <catch2/catch.hpp>
 
 #include "estimate/device_test.hpp"
-#include "estimate/photon_estimate.hpp"
 #include "estimate/specialisation.hpp"
 #include "maps/map_page.hpp"
 #include "maps/map_store.hpp"

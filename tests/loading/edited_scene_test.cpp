@@ -2,7 +2,6 @@
 #include "writing/edited_scene.hpp"
 
 #include <catch2/catch.hpp>
-#include <cstdint>
 
 #include "file_bytes.hpp"
 #include "photile/layered_picture.hpp"

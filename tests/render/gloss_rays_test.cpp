@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "cache/surface_cache.hpp"
-#include "photile/errors.hpp"
 #include "pictures.hpp"
 #include "validation/analytic_cases.hpp"
 

@@ -61,27 +61,20 @@ case $runtime in
     [ -e "${PHOTILE_OCLGRIND_ICD:-}" ] || skip "no Oclgrind; apt-get install oclgrind"
     run "$PHOTILE_OCLGRIND_ICD" '' "$@"
     ;;
-  other)
+  other | pocl+other)
+    [ "$runtime" = other ] || [ -e /etc/OpenCL/vendors/pocl.icd ] || skip "no PoCL; apt-get install pocl-opencl-icd"
     found=0
     IFS=: read -ra folders <<<"${PHOTILE_TEST_RUNTIMES:-$PHOTILE_INTEL_RUNTIME}"
     for folder in "${folders[@]}"; do
       [ -d "$folder" ] || continue
       found=1
-      run "$folder" "$(dirname "$(cat "$folder"/*.icd | head -n 1)")" "$@"
-    done
-    [ $found = 1 ] || skip "no OpenCL runtime but Debian's; cmake/fetch.sh intel-runtime brings one"
-    ;;
-  pocl+other)
-    [ -e /etc/OpenCL/vendors/pocl.icd ] || skip "no PoCL; apt-get install pocl-opencl-icd"
-    found=0
-    IFS=: read -ra folders <<<"${PHOTILE_TEST_RUNTIMES:-$PHOTILE_INTEL_RUNTIME}"
-    for folder in "${folders[@]}"; do
-      [ -d "$folder" ] || continue
-      found=1
-      both=$cache/pocl+other
-      mkdir -p "$both"
-      cp /etc/OpenCL/vendors/pocl.icd "$folder"/*.icd "$both"
-      run "$both" "$(dirname "$(cat "$folder"/*.icd | head -n 1)")" "$@"
+      vendors=$folder
+      if [ "$runtime" = pocl+other ]; then
+        vendors=$cache/pocl+other
+        mkdir -p "$vendors"
+        cp /etc/OpenCL/vendors/pocl.icd "$folder"/*.icd "$vendors"
+      fi
+      run "$vendors" "$(dirname "$(cat "$folder"/*.icd | head -n 1)")" "$@"
     done
     [ $found = 1 ] || skip "no OpenCL runtime but Debian's; cmake/fetch.sh intel-runtime brings one"
     ;;

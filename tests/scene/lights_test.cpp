@@ -8,7 +8,6 @@
 #include <span>
 
 #include "common/content_hash.hpp"
-#include "photile/limits.hpp"
 #include "scene/light_emission.hpp"
 #include "scene/light_names.hpp"
 #include "scene/scene_queries.hpp"

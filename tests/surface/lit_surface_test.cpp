@@ -9,7 +9,6 @@
 #include "photon_sets.hpp"
 #include "surface/boundary_edges.hpp"
 #include "surface/coplanar_regions.hpp"
-#include "surface/open_fraction.hpp"
 #include "surface/smooth_components.hpp"
 #include "surface/unlit_sides.hpp"
 #include "test_scenes.hpp"

@@ -6,7 +6,6 @@
 
 #include "lamp_below_ceiling.hpp"
 #include "photile/photons.hpp"
-#include "trace/light_offset.hpp"
 #include "trace/photon_tracer.hpp"
 #include "trace/random_stream.hpp"
 #include "trace/ray_query.hpp"

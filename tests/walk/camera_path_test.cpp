@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <glm/gtc/constants.hpp>
 #include <nlohmann/json.hpp>
 
 #include "gltf/cameras.hpp"
