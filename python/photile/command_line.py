@@ -4,6 +4,7 @@ one line with its exit codes."""
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from collections.abc import Callable, Iterable
 from typing import Any, NoReturn, Optional
@@ -11,7 +12,7 @@ from typing import Any, NoReturn, Optional
 from .errors import InputError, UsageError
 from .report.command import Failure
 
-__all__ = ["Parser", "exit_code", "of_form", "one_line"]
+__all__ = ["Parser", "exit_code", "of_form", "one_line", "three"]
 
 _column = 30  # of the help, where what an option does begins
 _of_debian = {"numpy": "python3-numpy", "photile": "python3-photile", "shapely": "python3-shapely"}
@@ -72,6 +73,14 @@ def of_form(form: str, read: Callable[[str], Any]) -> Callable[[str], Any]:
         except ValueError:
             raise argparse.ArgumentTypeError(f"'{text}' is not {form}") from None
     return value
+
+
+def three(text: str) -> list[float]:
+    """Numbers with commas between: a point, or a site."""
+    a, b, c = map(float, text.split(","))
+    if not all(map(math.isfinite, (a, b, c))):
+        raise ValueError
+    return [a, b, c]
 
 
 def _missing(module: str) -> str:

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from .arrangements import Arrangement, Designer, Room, most_luminaires
-from .command_line import Parser, of_form
+from .command_line import Parser, of_form, three
 from .report import command as report
 from .report.tables import targets_of
 
@@ -256,13 +256,6 @@ def _length_and_width(text: str) -> list[float]:
     return [length, width]
 
 
-def _point(text: str) -> list[float]:
-    x, y, z = map(float, text.split(","))
-    if not all(map(math.isfinite, (x, y, z))):
-        raise ValueError
-    return [x, y, z]
-
-
 def _parser() -> Parser:
     positive = of_form("a number above 0", _positive)
     parser = Parser(
@@ -298,7 +291,7 @@ def _parser() -> Parser:
         help="greatest spacing of a field that is searched for, m; default: "
              f"{_spacing_criterion:g} times the height above the plane, a usual spacing criterion "
              "(as ANSI/IES LS-1 defines it); the data sheet may have the luminaire's own")
-    group.add_argument("--aim", type=of_form("X,Y,Z, three numbers", _point), metavar="X,Y,Z",
+    group.add_argument("--aim", type=of_form("X,Y,Z, three numbers", three), metavar="X,Y,Z",
                        help="point at which all luminaires aim; default: down")
     group.add_argument("--across", action="store_true",
                        help="C0 across the longest wall, or the radius, in place of along it")

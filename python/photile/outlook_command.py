@@ -5,23 +5,15 @@ from __future__ import annotations
 import argparse
 import importlib
 import json
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Optional
 
-from .command_line import Parser, of_form
+from .command_line import Parser, of_form, three
 from .converters import write_files
 from .errors import UsageError
 
 __all__ = ["main"]
-
-
-def _three(text: str) -> tuple[float, ...]:
-    a, b, c = map(float, text.split(","))
-    if not all(map(math.isfinite, (a, b, c))):
-        raise ValueError
-    return a, b, c
 
 
 def _parser() -> Parser:
@@ -32,14 +24,14 @@ def _parser() -> Parser:
     add("-o", "--output", type=Path, metavar="FILE.json", help="results to write; --include shows them in a report")
     add = parser.add_argument_group("Places").add_argument
     add("--plane", default="floor+1.2", metavar="HEIGHT", help="eyes; default: floor+1.2, of people who sit")
-    add("--inside", type=of_form("X,Y,Z, three numbers", _three), metavar="X,Y,Z",
+    add("--inside", type=of_form("X,Y,Z, three numbers", three), metavar="X,Y,Z",
         help="point in the room; default: the first camera's room")
     add("--rooms", default="", metavar="GLOB", help="rooms by name, as photile info lists them; * = all")
     add("--windows", action="append", default=[], metavar="GLOB",
         help="material of the panes; repeatable; default: all glass")
     add = parser.add_argument_group("Sun").add_argument
     add("--date", metavar="YYYY-MM-DD", help="day of the sun, from 1 February to 21 March")
-    add("--site", type=of_form("LAT,LON,TZ, three numbers", _three), metavar="LAT,LON,TZ",
+    add("--site", type=of_form("LAT,LON,TZ, three numbers", three), metavar="LAT,LON,TZ",
         help="degrees north and east, hours ahead of UTC")
     add("--weather", type=Path, metavar="FILE", help="weather file (.epw) whose site is taken")
     add("--north", type=float, default=0.0, metavar="DEGREES", help="north clockwise from -z; default: 0")

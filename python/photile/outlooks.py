@@ -196,12 +196,14 @@ def sun_hours(
         raise UsageError("sun_hours: give site=(latitude, longitude, time zone), or weather")
     if not 0 < number(minutes, "minutes") <= 60:
         raise UsageError(f"minutes: {minutes!r} is not a number above 0, at most 60")
+    if not -90 <= number(lowest_sun, "lowest_sun") <= 90:
+        raise UsageError(f"lowest_sun: {lowest_sun!r} is not a number of degrees from -90 to 90")
     steps = int(np.ceil(24 * 60 / minutes))
     hours = (np.arange(steps) + 0.5) * 24 / steps
     suns, elevations = _photile.suns(
         scene._core, joined(site, ",") if site is not None else "",
         os.fspath(weather) if weather is not None else "", scene._north, day, hours.tolist())
-    high = elevations >= np.radians(number(lowest_sun, "lowest_sun"))
+    high = elevations >= np.radians(lowest_sun)
     around = _photile.surroundings(scene._core)
     if points is None:
         axes = _photile.axes(scene._core)

@@ -127,9 +127,8 @@ def test_glare_and_daylight_factors_stand_in_a_report(tmp_path):
                     for more in ({}, {"daylight_factor": True}))
     outlook = photile.view_out(room, lux[0].grid), photile.sun_hours(room, "2026-03-20", site=(50, 0, 0))
     photile.write_report(tmp_path / "a.html", lux, factors, *outlook)
-    page = (tmp_path / "a.html").read_text()
-    assert f"<td>{factors[0].lux.mean():.2f}%</td>" in page and factors[0].unit == "%"
-    assert "View out (EN 17037)" in page and "Sunlight (EN 17037)" in page
+    told = f"<td>{factors[0].lux.mean():.2f}%</td>", "View out (EN 17037)", "Sunlight (EN 17037)"
+    assert all(text in (tmp_path / "a.html").read_text() for text in told) and factors[0].unit == "%"
 
 
 def test_the_sun_stands_where_the_hour_and_the_site_have_it():

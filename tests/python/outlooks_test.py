@@ -101,4 +101,5 @@ def test_the_command_rates_rooms_of_a_file_as_the_functions_do(tmp_path):
     view, sun = photile.view_out(scene, grid), photile.sun_hours(scene, "2026-03-20", site=site)
     assert json.loads((tmp_path / "a.json").read_text()) == {**view._content, **sun._content}
     assert f"room 1: view out {view.level}" in ran.stdout and "sun on 2026-03-20" in ran.stdout
-    assert "--date" in run_photile(*words).stderr
+    refused = run_photile(*words).stderr + run_photile(*words, "--site=1,1,1", "--lowest-sun=nan").stderr
+    assert "--date" in refused and "lowest_sun: nan" in refused
