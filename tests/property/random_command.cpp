@@ -114,6 +114,11 @@ class Generator : CommandBuilder {
     if (dice_.chance(0.1)) output("--honeybee", "honeybee");
     maybe(0.1, {"--clearance", fmt::format("{:g}", 0.1 * s)});
     false_colour();
+    sensor_light();
+  }
+
+  /// What lights the sensors, by photons or by paths.
+  void sensor_light() {
     light_changes(0.25);
     lights();
     if (dice_.chance(0.3)) {
@@ -217,13 +222,7 @@ class Generator : CommandBuilder {
     maybe(0.1, {"--camera", dice_.one_of({"0", "default", "0", "nobody"})});
     maybe(0.1, {"--source-luminance", dice_.one_of({"5", "1000", "1e30", "0"})});
     maybe(0.2, {"--target", dice_.one_of({"office-desk", "UGR=19", "UGR=22", "UGR=-1", "hall"})});
-    light_changes(0.25);
-    lights();
-    if (dice_.chance(0.3)) {
-      add({"--integrator", "path"});
-    } else {
-      settings({"samples_per_pixel", "gloss", "direct_rays"});
-    }
+    sensor_light();
   }
 
   void daylight() {

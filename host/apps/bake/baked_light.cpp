@@ -17,6 +17,10 @@ namespace {
 /// Texels whose nodes are filled at a time: bounds the memory of their hits.
 constexpr std::size_t texels_per_fill = std::size_t{1} << 16;
 
+/// A texel that has less of the light of the one beside it may lie under a thing: what gets there
+/// comes through seams between faces.
+constexpr float dark_beside = 0.01f;
+
 void add(PrimaryHits& hits, const glm::vec3& position, std::uint32_t oriented_face) {
   hits.position.push_back(position);
   hits.oriented_face.push_back(oriented_face);
@@ -30,12 +34,6 @@ void for_each_value(const LightTable& values, std::uint32_t node, std::size_t la
   values.for_each(node, [&](std::size_t light, std::size_t i) {
     if (light == layer) visit(i);
   });
-}
-
-/// The light of all layers at a node.
-std::span<const glm::vec3> light_of(const LightTable& values, std::uint32_t node) {
-  const LightTable::Entries entries = values.row(node);
-  return std::span(values.irradiance).subspan(entries.first, entries.last - entries.first);
 }
 
 /// Light of a layer between nodes, at power 1.
@@ -157,24 +155,23 @@ PrimaryHits BakedLight::fill(Progress& progress) {
 }
 
 /// A lookup beside a box that stands on a floor takes a part of the texels under the box. Those
-/// that hold no light, and from which the box hides a lit texel next to them, get what that one
-/// has; and so do those in the slit below a thing that stands a little above the surface, such as a
-/// skirting board, where next to no light comes. A slit as high as texels are apart is lit where a
-/// lookup beside the thing reaches.
+/// with hardly any light, from which the box hides a lit texel next to them, get what that one has;
+/// and so do those in the slit below a thing that stands a little above the surface, such as a
+/// skirting board. A slit as high as texels are apart is lit where a lookup beside it reaches.
 void BakedLight::spread(const PrimaryHits& points) {
   const std::vector<cache::BilinearWeights> found = bilinear_;
   const LightTable& values = maps_.values();
-  const auto lit = [&](const cache::BilinearWeights& bilinear) {
+  std::vector<float> light(found.size(), 0.0f);  // of all layers and channels together
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t texel) {
+    const cache::BilinearWeights& bilinear = found[texel];
     for (std::size_t i = 0; i < bilinear.node.size(); ++i) {
       if (bilinear.weight[i] == 0.0f) continue;
-      const auto light = light_of(values, bilinear.node[i]);
-      if (std::any_of(light.begin(), light.end(),
-                      [](const glm::vec3& value) { return value.x + value.y + value.z > 0; })) {
-        return true;
-      }
+      values.for_each(bilinear.node[i], [&](std::size_t, std::size_t entry) {
+        const glm::vec3& value = values.irradiance[entry];
+        light[texel] += bilinear.weight[i] * (value.x + value.y + value.z);
+      });
     }
-    return false;
-  };
+  });
   const auto slit = static_cast<float>(texel() / 4);
   const auto may_be_covered = [&](const cache::BilinearWeights& bilinear) {
     return std::any_of(bilinear.node.begin(), bilinear.node.end(), [&](std::uint32_t node) {
@@ -196,15 +193,14 @@ void BakedLight::spread(const PrimaryHits& points) {
     for (std::uint32_t y = 0; y < rectangle.height; ++y) {
       for (std::uint32_t x = 0; x < rectangle.width; ++x) {
         const std::size_t here = texel(x, y);
-        const bool dark = !lit(found[here]), covered = may_be_covered(found[here]);
-        if (!dark && !covered) continue;
+        const bool covered = may_be_covered(found[here]);
         for (const auto& [dx, dy] : around) {
           const std::uint32_t nx = x + dx, ny = y + dy;  // beyond 0 they are large
           if (nx >= rectangle.width || ny >= rectangle.height) continue;
           const std::size_t beside = texel(nx, ny);
-          if (!lit(found[beside])) continue;
-          const bool hidden =
-              dark && !maps_.sees(member(at.chart), point(at, x, y), point(at, nx, ny));
+          if (!(light[beside] > 0)) continue;
+          const bool hidden = light[here] < dark_beside * light[beside] &&
+                              !maps_.sees(member(at.chart), point(at, x, y), point(at, nx, ny));
           if (!hidden &&
               !(covered && maps_.is_in_slit(on_surface(beside), on_surface(here), slit))) {
             continue;

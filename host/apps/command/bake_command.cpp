@@ -10,6 +10,7 @@
 #include "command/option_group.hpp"
 #include "command/output_files.hpp"
 #include "command/processes.hpp"
+#include "command/quality_options.hpp"
 #include "command/render_options.hpp"
 #include "command/saved_maps_option.hpp"
 #include "command/summary.hpp"
@@ -77,6 +78,8 @@ void add_bake_command(CLI::App& photile) {
            "largest width and height of the pictures, texels",
            count_between(64, limits::max_image_side))
       ->capture_default_str();
+  set_quality(options->render.quality_options(), Quality::good);
+  add_quality_preset(*command, options->render.quality_options());
   add_setting_options(*command, options->render,
                       {"samples_per_pixel", "passes", "direct_rays", "light_maps"});
   add_saved_maps_options(*command, options->render);
