@@ -106,32 +106,26 @@ void Luminaires::add_area_light(std::uint32_t light, const glm::vec3& radiance, 
   }
 }
 
-VisibleLuminaire Luminaires::surface_seen(const Luminaire& luminaire, const Observer& observer,
-                                          const glm::dvec3& eye, const glm::dvec3& power) const {
+VisibleLuminaire Luminaires::seen_in_parts(
+    const Luminaire& luminaire, const Observer& observer, const glm::dvec3& eye,
+    const std::function<PatchSeen(const Patch&, const glm::dvec3& direction)>& of_patch) const {
   VisibleLuminaire seen{luminaire.name};
   double light = 0, weighed = 0;
   for (const Patch& patch : luminaire.patches) {
     const glm::dvec3 way = glm::dvec3(patch.point.position) - eye;
     const double distance = glm::length(way);
     const glm::dvec3 direction = way / distance;
-    const double cosine = -glm::dot(direction, glm::dvec3(patch.point.normal));
     const double ahead = glm::dot(direction, observer.forward);
-    if (!(cosine > 0) || !(ahead > 0)) continue;
-    const glm::dvec3 passes(trace::transmittance(
-        rays_, glm::vec3(eye), patch.point.origin_towards(glm::vec3(-direction))));
-    if (passes == glm::dvec3(0.0)) continue;
-    const double area = cosine * static_cast<double>(patch.area);
-    const double solid_angle = area / (distance * distance);
+    if (!(distance > 0) || !(ahead > 0)) continue;
+    const auto [area, candela] = of_patch(patch, direction);
+    if (!(candela > 0)) continue;
+    const double solid_angle = area / (distance * distance), lux = candela / (distance * distance);
     const double p = position_index(observer, direction);
-    const glm::vec3 radiance =
-        luminaire.radiance *
-        trace::emission_towards(rays_.scene(), patch.point, glm::vec3(-direction));
-    const double flux = solid_angle * luminance(power * glm::dvec3(radiance) * passes);
     seen.projected_area += area;
     seen.solid_angle += solid_angle;
-    seen.illuminance += ahead * flux;
+    seen.illuminance += ahead * lux;
     seen.direction += solid_angle * direction;
-    light += flux;
+    light += lux;
     weighed += solid_angle / (p * p);
   }
   if (!(light > 0)) return seen;
@@ -141,47 +135,42 @@ VisibleLuminaire Luminaires::surface_seen(const Luminaire& luminaire, const Obse
   return seen;
 }
 
+VisibleLuminaire Luminaires::surface_seen(const Luminaire& luminaire, const Observer& observer,
+                                          const glm::dvec3& eye, const glm::dvec3& power) const {
+  return seen_in_parts(luminaire, observer, eye, [&](const Patch& patch, const glm::dvec3& way) {
+    const glm::vec3 back(-way);
+    const double cosine = -glm::dot(way, glm::dvec3(patch.point.normal));
+    if (!(cosine > 0)) return PatchSeen{};
+    const glm::dvec3 passes(
+        trace::transmittance(rays_, glm::vec3(eye), patch.point.origin_towards(back)));
+    if (passes == glm::dvec3(0.0)) return PatchSeen{};
+    const glm::vec3 radiance =
+        luminaire.radiance * trace::emission_towards(rays_.scene(), patch.point, back);
+    const double area = cosine * static_cast<double>(patch.area);
+    return PatchSeen{area, area * luminance(power * glm::dvec3(radiance) * passes)};
+  });
+}
+
 VisibleLuminaire Luminaires::lamp_seen(const Luminaire& luminaire, const Observer& observer,
                                        const glm::dvec3& eye, const glm::dvec3& power) const {
-  VisibleLuminaire seen{luminaire.name};
   const Scene& scene = rays_.scene();
   const Light& lamp = scene.lights[luminaire.light];
   const trace::LightAxes axes(lamp);
-  double whole = 0, light = 0, weighed = 0;
+  double whole = 0;
   for (const Patch& patch : luminaire.patches) whole += static_cast<double>(patch.area);
-  for (const Patch& patch : luminaire.patches) {
-    const glm::dvec3 way = glm::dvec3(patch.point.position) - eye;
-    const double distance = glm::length(way);
-    const glm::dvec3 direction = way / distance;
-    const double ahead = glm::dot(direction, observer.forward);
-    if (!(distance > 0) || !(ahead > 0)) continue;
+  return seen_in_parts(luminaire, observer, eye, [&](const Patch& patch, const glm::dvec3& way) {
     const glm::vec3 place = lamp.kind == LightKind::area
-                                ? patch.point.origin_towards(glm::vec3(-direction)).position
+                                ? patch.point.origin_towards(glm::vec3(-way)).position
                                 : lamp.position;
     const double share = static_cast<double>(patch.area) / whole;
-    const double candela =
-        share * groups_.fraction[luminaire.light] *
-        trace::candela_per_lumen(scene, lamp, -direction) *
-        luminance(power * glm::dvec3(lamp.color) *
-                  glm::dvec3(trace::transmittance(rays_, glm::vec3(eye), place)));
-    if (!(candela > 0)) continue;
-    const double area =
-        share * std::max(luminaire.opening->projected_area(axes.to_light(-direction)),
-                         defaults::small_source_area);
-    const double solid_angle = area / (distance * distance);
-    const double p = position_index(observer, direction);
-    seen.projected_area += area;
-    seen.solid_angle += solid_angle;
-    seen.illuminance += ahead * candela / (distance * distance);
-    seen.direction += solid_angle * direction;
-    light += candela / (distance * distance);
-    weighed += solid_angle / (p * p);
-  }
-  if (!(light > 0)) return seen;
-  seen.luminance = light / seen.solid_angle;
-  seen.position_index = std::sqrt(seen.solid_angle / weighed);
-  seen.direction = glm::normalize(seen.direction);
-  return seen;
+    const double area = share * std::max(luminaire.opening->projected_area(axes.to_light(-way)),
+                                         defaults::small_source_area);
+    return PatchSeen{area,
+                     share * groups_.fraction[luminaire.light] *
+                         trace::candela_per_lumen(scene, lamp, -way) *
+                         luminance(power * glm::dvec3(lamp.color) *
+                                   glm::dvec3(trace::transmittance(rays_, glm::vec3(eye), place)))};
+  });
 }
 
 std::vector<VisibleLuminaire> Luminaires::seen_by(const Observer& in_file,

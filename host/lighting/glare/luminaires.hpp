@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
@@ -65,6 +66,13 @@ class Luminaires {
   };
 
   void add_area_light(std::uint32_t light, const glm::vec3& radiance, int samples);
+  /// A patch as it shows towards an eye; without candela it is not seen.
+  struct PatchSeen {
+    double area = 0, candela = 0;  ///< m2, projected
+  };
+  VisibleLuminaire seen_in_parts(
+      const Luminaire& luminaire, const Observer& observer, const glm::dvec3& eye,
+      const std::function<PatchSeen(const Patch&, const glm::dvec3& direction)>& of_patch) const;
   VisibleLuminaire surface_seen(const Luminaire& luminaire, const Observer& observer,
                                 const glm::dvec3& eye, const glm::dvec3& power) const;
   VisibleLuminaire lamp_seen(const Luminaire& luminaire, const Observer& observer,

@@ -317,8 +317,7 @@ void clear_of_furniture(const Scene& scene, double clearance, bool may_lack,
     if (grid.sensors.empty()) {
       const std::string reason = fmt::format(
           "{}: all {} points lie in objects or less than {} m from surfaces; give another height "
-          "or "
-          "position, or less clearance",
+          "or position, or less clearance",
           grid.name, all, std::max(clearance, touching));
       if (!may_lack) throw UsageError(reason);
       progress.warn(reason);

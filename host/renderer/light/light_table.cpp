@@ -10,9 +10,11 @@
 #include <utility>
 
 #include "common/touched_memory.hpp"
+#include "light/light_at_points.hpp"
 #include "light/row_sum.hpp"
 #include "light/table_bytes.hpp"
 #include "photile/defaults.hpp"
+#include "photile/light_layers.hpp"
 
 namespace photile {
 namespace {
@@ -214,6 +216,15 @@ LightTable sum_of(const LightTable& a, const LightTable& b, float share_a, float
     }
   };
   return light::rows_by_tasks(a.rows(), rows_per_task, none, write);
+}
+
+std::vector<double> light::layer_powers(const Scene& scene) {
+  std::vector<double> powers;
+  for (const LightGroup& group : light_groups_of(scene).groups) powers.push_back(group.power);
+  if (std::all_of(powers.begin(), powers.end(), [](double power) { return power == 0; })) {
+    std::fill(powers.begin(), powers.end(), 1.0);
+  }
+  return powers;
 }
 
 }  // namespace photile

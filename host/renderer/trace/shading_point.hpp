@@ -1,24 +1,25 @@
 // A shading point: the surface at a hit, and its weights for the arriving light.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <optional>
 
+#include "photile/device/bsdf.h"
 #include "photile/ray_scene.hpp"
 #include "photile/scene.hpp"
 #include "trace/opaque_bsdf.hpp"
 #include "trace/random_stream.hpp"
+#include "trace/sampling.hpp"
+#include "trace/scatter.hpp"
 #include "trace/surface.hpp"
 
 namespace photile::trace {
 
 /// The point of its surface where a hit lies.
 inline SurfacePoint point_of(const Scene& scene, const PrimaryHits& hits, std::size_t hit) {
-  const std::uint32_t face = hits.oriented_face[hit];
-  return surface_point(
-      scene, nearest_on_triangle(scene, triangle_of(face), glm::dvec3(hits.position[hit])),
-      side_of(face));
+  return surface_point(scene, hits.oriented_face[hit], hits.position[hit]);
 }
 
 /// How the surface reflects light against the ray of an eye that arrived there, smoothly shaded. A
@@ -57,13 +58,23 @@ class ShadingPoint {
 
   /// A direction, or nothing where it would enter the surface.
   ///   choice, random   separate blocks
-  std::optional<glm::vec3> sample(const RandomBlock& choice, const RandomBlock& random) const;
+  std::optional<glm::vec3> sample(const RandomBlock& choice, const RandomBlock& random) const {
+    if (bsdf_.lambertian() || choice.bit(0)) return bsdf_.sample(random);
+    return Frame(point_.normal)
+        .to_world(sample_cosine_hemisphere(random.uniform(direction_word),
+                                           random.uniform(direction_word + 1)));
+  }
 
   /// Density of such directions per steradian.
-  float density(const glm::vec3& direction) const;
+  float density(const glm::vec3& direction) const {
+    if (bsdf_.lambertian()) return bsdf_.density(direction);
+    return 0.5f * (bsdf_.density(direction) + cosine(direction) / PHOTILE_PI);
+  }
 
  private:
-  float cosine(const glm::vec3& direction) const;
+  float cosine(const glm::vec3& direction) const {
+    return std::max(0.0f, glm::dot(direction, point_.normal));
+  }
 
   const SurfacePoint& point_;
   const OpaqueBsdf& bsdf_;

@@ -178,10 +178,7 @@ glm::vec3 shading_normal(const Scene& scene, const SurfacePoint& point) {
 
 glm::vec3 shading_normal(const Scene& scene, std::uint32_t oriented_face,
                          const glm::vec3& position) {
-  return shading_normal(scene, surface_point(scene,
-                                             nearest_on_triangle(scene, triangle_of(oriented_face),
-                                                                 glm::dvec3(position)),
-                                             side_of(oriented_face)));
+  return shading_normal(scene, surface_point(scene, oriented_face, position));
 }
 
 ShadingNormals shading_normals(const Scene& scene, const SurfacePoint& point,

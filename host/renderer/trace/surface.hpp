@@ -75,6 +75,14 @@ inline glm::dvec3 position_of(const Scene& scene, const TriangleHit& hit) {
 /// The point `where` on the given side of its triangle.
 SurfacePoint surface_point(const Scene& scene, const TriangleHit& where, std::uint32_t side);
 
+/// The point of an oriented face nearest to `position` (metres), which lies on it within rounding.
+inline SurfacePoint surface_point(const Scene& scene, std::uint32_t oriented_face,
+                                  const glm::vec3& position) {
+  return surface_point(scene,
+                       nearest_on_triangle(scene, triangle_of(oriented_face), glm::dvec3(position)),
+                       side_of(oriented_face));
+}
+
 /// The point `where` on the side that a ray of this direction arrives at.
 SurfacePoint surface_hit(const Scene& scene, const TriangleHit& where, const glm::vec3& direction);
 
