@@ -251,15 +251,15 @@ struct FilmSample {
   RandomBlock scramble;
   EyeRay ray;  ///< its direction is 0 beyond the circle of a fisheye
 
-  FilmSample(const EyeSetup& setup, int x, int y, int sample, int times)
+  FilmSample(const EyeSetup& setup, int x, int y, int sample, int times, std::uint32_t sequence = 0)
       : pixel(static_cast<std::uint32_t>(y) * setup.parameters->width + x),
         index(static_cast<std::uint32_t>(sample)),
         path(std::uint64_t{pixel} * setup.parameters->samples_per_pixel *
                  setup.parameters->times_at_edges +
              index),
-        random(setup.parameters->seed, path, 0),
+        random(setup.parameters->seed, path, sequence),
         of_pixel(setup.parameters->seed, pixel, 0),
-        scramble(of_pixel.block(Purpose::film_position, 0)) {
+        scramble(of_pixel.block(Purpose::film_position, sequence)) {
     const PrimaryHitParameters& film = *setup.parameters;
     const glm::dvec2 at = glm::dvec2(x, y) + sobol_point(index, scramble);
     // Samples beyond the usual ones go to the same runs, so that each run has its part of them.
@@ -317,7 +317,8 @@ bool shows_edge(const EyeSetup& setup, int x, int y, EyeRecord& record) {
   EyeRecord first, other;
   std::vector<EyeRay> lesser_parts;  // of rays that glass splits: left out
   for (int sample = 0; sample < defaults::edge_probes; ++sample) {
-    const FilmSample probe(setup, x, y, sample, 1);
+    // From another sequence than the film: else samples that find a small lamp would be thinned.
+    const FilmSample probe(setup, x, y, sample, 1, 1);
     EyeRecord& own = sample == 0 ? first : other;
     own.hits.clear();
     own.glossy.clear();

@@ -165,8 +165,8 @@ std::optional<EyeEnd> follow_eye_ray(const EyeSetup& setup, EyeRay ray, const Ra
 void trace_eye_path(const EyeSetup& setup, int x, int y, int sample, int times, EyeRecord& record,
                     EyeRecord& reflected);
 
-/// Whether a pixel shows an edge, or a border of a texture: whether its first samples, over mirrors
-/// and through glass, hit more than one surface of about one colour. Adds the rays to `record`.
+/// Whether a pixel shows an edge, or a border of a texture: whether a few rays of their own, over
+/// mirrors and through glass, hit more than one surface of about one colour. Adds them to `record`.
 bool shows_edge(const EyeSetup& setup, int x, int y, EyeRecord& record);
 
 /// The source of the random numbers of a pixel's sample.
