@@ -1,5 +1,7 @@
 #include "render/picture.hpp"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -12,16 +14,25 @@
 namespace photile {
 namespace {
 
-/// Hits of a batch: enough to fill a device, little enough to stay in memory with all lights of
-/// each. Of estimates, so few that the allocator keeps their memory for the next ones, and fewer
-/// where each takes longer: progress is shown, and a request to stop takes effect soon.
-std::int64_t hits_per_batch(const RenderPlan& plan, std::size_t lights) {
+/// Rows of a batch. Its hits are enough to fill a device and for all cores to share what new nodes
+/// of light maps ask, and few enough to stay in memory with all lights of each and to tell how far
+/// a picture is. Of estimates, so few that the allocator keeps their memory for the next ones, and
+/// fewer where each takes longer: a request to stop takes effect soon.
+int rows_per_batch(const RenderPlan& plan, std::size_t lights, const PrimaryHitParameters& film) {
   constexpr std::int64_t most = 1 << 20, most_estimates = 1 << 18, most_entries = 1 << 24;
+  constexpr std::int64_t batches = 32, least_of_a_core = 1 << 15;
+  const std::int64_t hits_per_row =
+      std::int64_t{film.width} * (film.samples_per_pixel / film.passes);
+  // Processes take batches together, and may differ in their cores.
+  const int cores = plan.used().processes ? 2 : tbb::this_task_arena::max_concurrency();
   const std::int64_t hits = plan.reads_light_maps()
-                                ? most
+                                ? std::clamp(film.height * hits_per_row / batches,
+                                             std::min(most, least_of_a_core * cores), most)
                                 : most_estimates * defaults::neighbours /
                                       std::max(defaults::neighbours, plan.used().neighbours);
-  return std::min(hits, most_entries / static_cast<std::int64_t>(std::max<std::size_t>(1, lights)));
+  const auto layers = static_cast<std::int64_t>(std::max<std::size_t>(1, lights));
+  return static_cast<int>(std::clamp<std::int64_t>(
+      std::min(hits, most_entries / layers) / hits_per_row, 1, film.height));
 }
 
 /// What `runs` runs of a pixel's samples see becomes that of `less` runs.
@@ -60,11 +71,12 @@ void Picture::add(const HitSource& source, PassLight& light, Progress& progress)
   }
   if (film_.pass == 0) begin_film(source);
   const auto height = static_cast<std::uint64_t>(film_.height);
-  const Shard own = own_rows();
+  const auto* const all = plan_.used().processes;
+  const Shard own = all ? Shard{all->rank(), all->size()} : Shard{};
   const int begin = static_cast<int>(own.begin(height)), end = static_cast<int>(own.end(height));
   // All processes make as many batches: each may have to estimate for the others.
   const int most = static_cast<int>((height - 1) / own.count + 1);
-  const int rows = rows_per_batch();
+  const int rows = rows_per_batch(plan_, rays_.needs().light_count, film_);
   const LightTotals before = totals(light);
   progress.begin("estimate radiance", static_cast<std::uint64_t>(end - begin), "rows");
   for (int done = 0; done < most; done += rows) {
@@ -180,18 +192,6 @@ double Picture::compile_seconds() const {
   double most = 0;
   for (const Device& device : devices_) most = std::max(most, device.compile_seconds());
   return most;
-}
-
-Shard Picture::own_rows() const {
-  const auto* const processes = plan_.used().processes;
-  return processes ? Shard{processes->rank(), processes->size()} : Shard{};
-}
-
-int Picture::rows_per_batch() const {
-  const std::int64_t hits_per_row =
-      std::int64_t{film_.width} * (film_.samples_per_pixel / film_.passes);
-  return static_cast<int>(std::clamp<std::int64_t>(
-      hits_per_batch(plan_, rays_.needs().light_count) / hits_per_row, 1, film_.height));
 }
 
 PrimaryHitBatch Picture::trace_rows(const HitSource& source, const PassLight& light, int first,

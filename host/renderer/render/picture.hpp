@@ -42,8 +42,6 @@ class Picture {
   /// Adds what rays found in lobes to the film, unless this is already done.
   void add_lobes();
   /// Rows of the film that this process makes.
-  Shard own_rows() const;
-  int rows_per_batch() const;
   PrimaryHitBatch trace_rows(const HitSource& source, const PassLight& light, int first, int last);
   ///   by_lobes   the hits are on surfaces that are seen in lobes
   void add_hits(const HitSource& source, PassLight& light, PrimaryHitBatch& seen, bool by_lobes,
