@@ -140,13 +140,14 @@ TEST_CASE("gathered nodes: direct light is that of form factors, closer than ray
   const auto [rms, mean] = errors_of(maps, floor, truth);
   const LightTable raw =
       plain.gather({.rays = 32, .light_samples = 32}).gather(floor, numbers(floor.size()));
-  double squares = 0;
+  double squares = 0, stated = 0;
   for (std::size_t i = 0; i < floor.size(); ++i) {
-    squares +=
-        std::pow(luminance(glm::dvec3(raw.irradiance[i])) / truth(floor.position[i]) - 1, 2) /
-        static_cast<double>(floor.size());
+    const double light = truth(floor.position[i]), count = static_cast<double>(floor.size());
+    squares += std::pow(luminance(glm::dvec3(raw.irradiance[i])) / light - 1, 2) / count;
+    stated += std::pow(raw.error(i) / light, 2) / count;
   }
   CAPTURE(rms, mean, std::sqrt(squares));
+  CHECK(std::sqrt(squares / stated) == Approx(1).margin(0.2));
   CHECK(rms < 0.75 * std::sqrt(squares));  // points that are in doubt look again, filter or not
   CHECK(rms < 0.02);
   CHECK(std::abs(mean) < 0.01);

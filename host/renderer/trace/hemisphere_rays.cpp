@@ -24,6 +24,11 @@ namespace {
 /// Large enough to make a task's cost vanish, small enough to share work.
 constexpr std::size_t points_per_task = 16;
 
+/// Of ray ends on coats, those with a light sample: what it adds is a part of their light.
+constexpr float coats_with_light_samples = 0.25f;
+/// Bounds of their noise: alpha of a lobe, and hemispheres of its radiance that a sample counts as.
+constexpr float coat_alpha = 0.1f, most_received_by_coats = 8;
+
 struct TaskHits {
   EyeRecord ray_hits;
   std::vector<std::size_t> count, emission_count, direct_count;  ///< of each point
@@ -97,7 +102,6 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
         (slats.empty() || slats[hit.oriented_face] == 0)) {
       return;
     }
-    const std::uint32_t triangle = triangle_of(hit.oriented_face);
     const HitReflection reflection = reflection_of(ray_hits, ray_hits.hits.size() - 1);
     if (bounce > defaults::most_near_surfaces) {
       // Inside a metal solid, as at the rim of a board in its frame, hardly any light is left, but
@@ -105,9 +109,7 @@ void go_on_from_near(const RunSetup& run, const SurfacePoint& from, std::uint64_
       if (reflection.strong_lobe) remove_last();
       return;
     }
-    const SurfacePoint point =
-        surface_point(scene, nearest_on_triangle(scene, triangle, glm::dvec3(hit.position)),
-                      side_of(hit.oriented_face));
+    const SurfacePoint point = surface_point(scene, hit.oriented_face, hit.position);
     std::optional<OpaqueBsdf> bsdf;
     if (reflection.strong_lobe) bsdf.emplace(scene, point, -ray_hits.glossy.back().outgoing);
     remove_last();
@@ -199,23 +201,41 @@ Leaving leaving(const Frame& frame, const Aim* aim, glm::dvec2 u) {
                                             (aimed * way.density + (1 - aimed) * by_cosine_alone))};
 }
 
-/// Adds the light of hot spots where rays end that did not go on: hits from `before` on. Photons
-/// there do not carry it.
-void add_hot_spots(const RunSetup& run, std::size_t before, EyeRecord& ray_hits) {
+/// Adds what estimates do not hold of direct light where rays end that did not go on: hits from
+/// `before` on. That is the light of hot spots, which photons do not carry; and, by light samples
+/// at some of the hits, how much more or less coats reflect of lamps than of light from all sides.
+///   light_samples   those of coats are added to these; their tag is the pixel
+void add_direct_light(const RunSetup& run, const RandomStream& random, std::size_t before,
+                      ShadowRays& light_samples, EyeRecord& ray_hits) {
   const Scene& scene = run.rays.scene();
+  const LightSampler& light_sampler = *run.parameters.light_sampler;
+  const HotSpots& hot_spots = hot_spots_of(run.rays);
   for (std::size_t i = before; i < ray_hits.hits.size(); ++i) {
+    const bool coated =
+        !ray_hits.glossy.empty() && ray_hits.glossy[i].lobe.f90 > 0.0f &&
+        random.block(Purpose::direct_light, 2).uniform(0) < coats_with_light_samples;
+    if (!coated && hot_spots.empty()) continue;
     const EyeHit& hit = ray_hits.hits[i];
-    const SurfacePoint point = surface_point(
-        scene, nearest_on_triangle(scene, triangle_of(hit.oriented_face), glm::dvec3(hit.position)),
-        side_of(hit.oriented_face));
+    const SurfacePoint point = surface_point(scene, hit.oriented_face, hit.position);
+    OpaqueBsdf bsdf(scene, point,
+                    ray_hits.glossy.empty() ? -point.normal : -ray_hits.glossy[i].outgoing);
     for_each_hot_light(
-        impl_of(run.rays), *run.parameters.light_sampler, point,
+        impl_of(run.rays), light_sampler, point,
         [&](const LightSample& light, const glm::vec3& arrives) {
-          const OpaqueBsdf bsdf(
-              scene, point, ray_hits.glossy.empty() ? -point.normal : -ray_hits.glossy[i].outgoing);
           ray_hits.direct.push_back(
               {hit.pixel, light.layer, hit.throughput * bsdf.reflected(light.direction) * arrives});
         });
+    if (!coated) continue;
+    const HitReflection reflection = reflection_of(ray_hits, i);
+    const auto light = light_sampler.sample(point.position, random.block(Purpose::direct_light, 0),
+                                            random.block(Purpose::direct_light, 1));
+    if (reflection.strong_lobe || !light || hot_spots.holds(light->light, point.position)) continue;
+    bsdf.widen_lobe(coat_alpha);
+    const float cosine = glm::dot(light->direction, point.normal);
+    const float weight = light->weight_below(most_received_by_coats) / coats_with_light_samples;
+    const glm::vec3 more = bsdf.reflected(light->direction) / cosine -
+                           glm::one_over_pi<float>() * reflection.reflectance;
+    light_samples.add(point, light, weight * hit.throughput * more, 0.0f, hit.pixel);
   }
 }
 
@@ -253,8 +273,8 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
   const Frame frame(point.normal);
   const glm::vec3 throughput(glm::pi<float>() / static_cast<float>(rays));
   thread_local SelectionProbabilities probabilities;
-  thread_local ShadowRays near_light_samples;
-  near_light_samples.clear();
+  thread_local ShadowRays light_samples;
+  light_samples.clear();
   if (parameters.rays_per_light_sample > 0)
     parameters.light_sampler->weigh(point.position, point.normal, probabilities);
   std::optional<Aim> aim;
@@ -271,10 +291,10 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
     inverse_distances +=
         weight / std::max(1e-6f, glm::distance(point.position, ray_hits.hits.back().position));
     if (parameters.near > 0) {
-      go_on_from_near(run, point, number, before, stream, batches * rays, near_light_samples,
-                      ray_hits);
+      go_on_from_near(run, point, number, before, stream, batches * rays, light_samples, ray_hits);
     }
-    add_hot_spots(run, before, ray_hits);
+    add_direct_light(run, RandomStream(run.seed_of_rays, number, stream), before, light_samples,
+                     ray_hits);
   };
   for (std::uint32_t batch = 0; batch < batches; ++batch) {
     const RandomBlock scramble = of_point.block(Purpose::hemisphere_direction, batch);
@@ -316,7 +336,7 @@ float trace_point(const RunSetup& run, const SurfacePoint& point, std::uint64_t 
       end_ray(before, weight, stream);
     }
   }
-  for (const ShadowRays::Found& light : near_light_samples.found(run.rays)) {
+  for (const ShadowRays::Found& light : light_samples.found(run.rays)) {
     ray_hits.direct.push_back({light.tag, light.layer, light.irradiance});
   }
   return inverse_distances;

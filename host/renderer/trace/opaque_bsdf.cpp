@@ -80,6 +80,13 @@ void OpaqueBsdf::drop_lobe() {
   if (lobe_) lobe_->fraction = 0.0f;
 }
 
+void OpaqueBsdf::widen_lobe(float least_alpha) {
+  surface_.alpha = std::max(surface_.alpha, least_alpha);
+  if (!lobe_) return;
+  photile_albedo_fit(surface_.alpha, &lobe_->fit);
+  lobe_->diffuse = diffuse_part(surface_, lobe_->n_dot_view);
+}
+
 bool OpaqueBsdf::lobe_suits_rays() const {
   if (!lobe_ || !(lobe_->albedo > 0.0f)) return false;
   return surface_.alpha < narrow_lobe_alpha || lobe_->albedo < faint_lobe_albedo;

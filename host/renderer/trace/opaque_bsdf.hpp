@@ -76,6 +76,9 @@ class OpaqueBsdf {
   /// Leaves the reflection of one facet out; directions follow the cosine.
   void drop_lobe();
 
+  /// Spreads what one facet reflects over directions as wide as those of this alpha, at least.
+  void widen_lobe(float least_alpha);
+
   /// Whether rays find what the lobe reflects better than photons do: it is narrow, or reflects
   /// little.
   bool lobe_suits_rays() const;
