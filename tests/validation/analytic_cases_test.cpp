@@ -52,7 +52,7 @@ std::vector<ValidationRow> rows_of(const std::string& name,
 TEST_CASE("paths read what closed forms say, in every analytic case", "[slow]") {
   ValidationParameters parameters;
   parameters.by_photons = false;
-  parameters.paths = 200'000;
+  parameters.paths = 300'000;
   parameters.most_seeds = fewest_seeds;
   for (const AnalyticCase& analytic : analytic_cases()) {
     for (const ValidationRow& row : validate(analytic, {}, parameters, Progress::none())) {

@@ -17,8 +17,7 @@ namespace {
 /// Texels whose nodes are filled at a time: bounds the memory of their hits.
 constexpr std::size_t texels_per_fill = std::size_t{1} << 16;
 
-/// A texel that has less of the light of the one beside it may lie under a thing: what gets there
-/// comes through seams between faces.
+/// A texel with less of the light of the one beside it may lie under a thing, and be lit by seams.
 constexpr float dark_beside = 0.01f;
 
 void add(PrimaryHits& hits, const glm::vec3& position, std::uint32_t oriented_face) {
@@ -124,7 +123,8 @@ PrimaryHits BakedLight::fill(Progress& progress) {
   progress.begin("bake light maps", used_texels(), "texels");
   TexelPoints next;
   const auto value = [&] {
-    const auto& [texels, hits] = next;
+    const std::vector<std::size_t>& texels = next.texels;
+    const PrimaryHits& hits = next.hits;
     maps_.fill(hits, progress);
     tbb::parallel_for(std::size_t{0}, texels.size(), [&](std::size_t i) {
       const trace::FlushDenormals flush_denormals;

@@ -52,7 +52,8 @@ LuminaireData data_of(const std::vector<std::string_view>& lines, std::size_t en
   }
   LuminaireData data{values["manufac"], values["lumcat"], values["luminaire"],
                      values["lamp"].empty() ? values["lampcat"] : values["lamp"]};
-  for (const auto& [name, value] : values) {
+  for (const auto& field : values) {
+    const std::string &name = field.first, &value = field.second;
     const auto names = [&](std::string_view word) { return name.find(word) != std::string::npos; };
     if (names("cct") || names("colortemp") || names("color temp")) {
       data.kelvin = kelvin_in(value);

@@ -145,9 +145,8 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y 
 std::vector<glm::dvec2> corners_of(std::vector<glm::dvec2> line, double cell) {
   constexpr double straight = 0.002, longest_cut = 1.5;  // cells
   // What is farthest from anywhere is a corner, where a part may begin.
-  std::ranges::rotate(line, std::ranges::max_element(line, {}, [from = line.front()](auto& point) {
-                        return glm::distance(point, from);
-                      }));
+  const auto away = [from = line.front()](auto& point) { return glm::distance(point, from); };
+  std::rotate(line.begin(), std::ranges::max_element(line, {}, away), line.end());
   line.push_back(line.front());
   std::vector<glm::dvec2> ends{line.front()};
   for (std::size_t first = 0, i = 1; i + 1 < line.size(); ++i) {

@@ -175,9 +175,9 @@ LightTable SurfaceCache::light_of(const Reading& reading, const Progress& progre
 LightTable SurfaceCache::rows(const Reading& reading, const LightTable& of_alone,
                               const LightTable& of_nodes, const LightTable& of_coarse,
                               Coarse coarse_rows) const {
-  const auto& [points, alone, fine, coarse, fine_nodes, coarse_nodes] = reading;
   const std::vector<std::uint32_t> slots = reading.slots();
   const auto write = [&](std::size_t first, std::size_t last, LightTable& table) {
+    const auto& [points, alone, fine, coarse, fine_nodes, coarse_nodes] = reading;
     PointSums sums(scene_, needs_, table);
     for (std::size_t point = first; point < last; ++point) {
       std::size_t i = slots[point];
