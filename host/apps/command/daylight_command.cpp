@@ -215,12 +215,12 @@ SkyRounds rounds_of(const DaylightOptions& options, PreparedYear& prepared,
                     const std::function<double()>& elapsed,
                     const std::function<void(const SkyRounds&)>& told, Progress& progress) {
   constexpr int fewest = 4;  // in the shortest time, for an error
-  auto& [year, scene, grids] = prepared;
   SkyRounds rounds;
   const auto add = [&](int, Progress& deadline) {
     QuietProgress quiet(deadline);
     Progress& telling = rounds.count() == 0 ? deadline : quiet;
-    rounds.add(states_of(options, rounds.year_of_next(year), scene, grids, telling));
+    rounds.add(states_of(options, rounds.year_of_next(prepared.year), prepared.scene,
+                         prepared.grids, telling));
     return 0.0;
   };
   const auto finished = [&](int round, double) {

@@ -20,7 +20,7 @@ namespace {
 /// fewer where each takes longer: a request to stop takes effect soon.
 int rows_per_batch(const RenderPlan& plan, std::size_t lights, const PrimaryHitParameters& film) {
   constexpr std::int64_t most = 1 << 20, most_estimates = 1 << 18, most_entries = 1 << 24;
-  constexpr std::int64_t batches = 32, least_of_a_core = 1 << 15;
+  constexpr std::int64_t batches = 8, least_of_a_core = 1 << 16;
   const std::int64_t hits_per_row =
       std::int64_t{film.width} * (film.samples_per_pixel / film.passes);
   // Processes take batches together, and may differ in their cores.
