@@ -54,7 +54,7 @@ step() {
     echo "$name"
     return 0
   fi
-  rm -f "$folder"/rows/*-"${name// /-}"
+  rm -f "$folder"/rows/[0-9][0-9][0-9]-"${name// /-}"
   if ! "$@" > "$log" 2>&1; then
     verdict="**failed**"
     failed=1
