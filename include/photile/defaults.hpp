@@ -163,7 +163,7 @@ inline constexpr float filter_least_noise = 0.001f;
 /// Pixels that show an edge have this many samples, but at most `most_times_at_edges` times as many
 /// as others: a sample at an edge errs by the whole difference of the surfaces.
 inline constexpr int edge_samples = 64, most_times_at_edges = 4;
-/// The first samples of a pixel, which tell whether it shows an edge; pixels with fewer samples are
+/// Rays of a pixel that tell whether it shows an edge, beside its samples; pixels with fewer are
 /// not tested.
 inline constexpr int edge_probes = 8;
 /// Two hits are of different surfaces where their normals differ by more than 10 degrees, where one
