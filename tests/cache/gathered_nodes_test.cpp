@@ -148,6 +148,7 @@ TEST_CASE("gathered nodes: direct light is that of form factors, closer than ray
   }
   CAPTURE(rms, mean, std::sqrt(squares));
   CHECK(std::sqrt(squares / stated) == Approx(1).margin(0.2));
+  CHECK(std::sqrt(stated) < 0.05);
   CHECK(rms < 0.75 * std::sqrt(squares));  // points that are in doubt look again, filter or not
   CHECK(rms < 0.02);
   CHECK(std::abs(mean) < 0.01);

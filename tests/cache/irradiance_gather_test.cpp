@@ -233,8 +233,7 @@ TEST_CASE("gathering: what slats reflect into a room is the light of the parts t
 }
 
 TEST_CASE("gathering: walls get from a coated floor in the sun what paths find") {
-  // A coat reflects steep light upwards. Taken as light from all sides, it would light the wall by
-  // 7% too much. Estimates on a matt floor tell what else they are wrong by.
+  // Steep light taken as from all sides would be 7% too much; a matt floor tells other errors.
   double to_paths[2] = {0, 0};
   for (const bool coated : {false, true}) {
     SceneBuilder builder;

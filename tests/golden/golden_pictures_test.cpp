@@ -56,8 +56,7 @@ struct TileComparison {
 
 /// Student's t for 30 degrees of freedom, two-sided, at 1 - (1 - 1e-6)^(1/1000).
 constexpr double t_critical = 8.72;
-/// The tolerance of the whole picture: float sums in another order, where no seed differs from
-/// another.
+/// Of the whole picture: float sums in another order, where no seed differs from another.
 constexpr double rounding = 1e-5;
 
 TileMean over_seeds(const std::string& tile, const std::vector<glm::dvec4>& values) {

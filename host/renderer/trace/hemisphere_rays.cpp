@@ -26,7 +26,7 @@ constexpr std::size_t points_per_task = 16;
 
 /// Of ray ends on coats, those with a light sample: what it adds is a part of their light.
 constexpr float coats_with_light_samples = 0.25f;
-/// Bounds of their noise: alpha of a lobe, and hemispheres of its radiance that a sample counts as.
+/// What bounds its noise: the least alpha of a lobe, and the most hemispheres of a lamp's radiance.
 constexpr float coat_alpha = 0.1f, most_received_by_coats = 8;
 
 struct TaskHits {
