@@ -96,11 +96,11 @@ LightTable light::joined(LightTable none, std::vector<LightTable> parts) {
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
     const LightTable part = std::move(parts[i]);
     for_each_column(all, part, [&](auto& column, const auto& values, std::size_t width) {
-      std::copy(values.begin(), values.end(), column.data() + entries[i] * width);
+      if (!values.empty())
+        std::copy(values.begin(), values.end(), column.data() + entries[i] * width);
     });
-    for (std::size_t row = 1; row < part.first.size(); ++row) {
+    for (std::size_t row = 1; row < part.first.size(); ++row)
       all.first[rows[i] + row] = entries[i] + part.first[row];
-    }
   });
   return all;
 }
