@@ -58,8 +58,7 @@ TEST_CASE("readers take or refuse every file of the corpus, in a line") {
   const std::vector<unsigned char> gif{'G', 'I', 'F', '8', '9', 'a', 1, 0, 1, 0};
   fuzz_targets().at("texture")(gif);
   // Each thread's first allocation would otherwise reserve 128 MB of addresses for itself,
-  // whichever input is being read. The allocator of AddressSanitizer refuses this, and needs it
-  // not.
+  // whichever input is being read. AddressSanitizer's allocator refuses this setting.
   ::mallopt(M_ARENA_MAX, 1);
   const std::map<std::string, int> archived = archived_inputs();
   CHECK(archived.size() == fuzz_targets().size());
