@@ -38,10 +38,10 @@ for target in "${targets[@]}"; do
     end=$((SECONDS + seconds)) seed=${PHOTILE_PROPERTIES_SEED:-1000}
     : > build/soak/commands.log
     while ((SECONDS < end)); do
-      PHOTILE_PROPERTIES=500 PHOTILE_PROPERTIES_SEED=$seed nice -n 19 \
+      PHOTILE_PROPERTIES=100 PHOTILE_PROPERTIES_SEED=$seed nice -n 19 \
         build/release/tests/property/photile_tests_property >> build/soak/commands.log 2>&1 ||
         failed=1
-      seed=$((seed + 500))
+      seed=$((seed + 100))
     done
     echo "commands: $((seed - ${PHOTILE_PROPERTIES_SEED:-1000})) tried"
     continue
