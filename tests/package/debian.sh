@@ -38,12 +38,12 @@ page=$(dpkg-deb --fsys-tarfile "$scratch"/packages/photile_*.deb |
 
 # A bare Debian is made once and copied for each run.
 if [ ! -e "$scratch/bare.tar" ]; then
-  rm -rf "$root"
+  rm -rf --one-file-system "$root"
   debootstrap --variant=minbase bookworm "$root" "$mirror" > "$scratch/debootstrap.log" 2>&1 ||
     skip "debootstrap found no Debian 12 at $mirror; PHOTILE_DEBIAN_MIRROR names another"
   tar -C "$root" -cf "$scratch/bare.tar" .
 fi
-rm -rf "$root"
+rm -rf --one-file-system "$root"
 mkdir -p "$root"
 tar -C "$root" -xf "$scratch/bare.tar"
 cp "$scratch"/packages/*.deb "$root/root"
@@ -115,6 +115,6 @@ grep -q '^point 0: nearest photon' "$scratch/example.log" || fail "the program p
 inside "apt-get purge --yes photile photile-openimageio python3-photile libphotile-dev" > /dev/null 2>&1 ||
   fail "the packages cannot be removed"
 umount "$root/proc" "$root/sys"
-rm -rf "$root"
+rm -rf --one-file-system "$root"
 [ "$numpy_2" = found ] || skip "all but numpy 2, which pip does not find; PyPI is not reachable"
 echo "photile, python3-photile and libphotile-dev install on Debian 12 and work there"

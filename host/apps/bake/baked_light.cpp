@@ -17,7 +17,8 @@ namespace {
 /// Texels whose nodes are filled at a time: bounds the memory of their hits.
 constexpr std::size_t texels_per_fill = std::size_t{1} << 16;
 
-/// A texel with less of the light of the one beside it may lie under a thing, and be lit by seams.
+/// A texel with less than this fraction of the light beside it, and of the median of all, may lie
+/// under a thing: what gets there comes through seams between faces.
 constexpr float dark_beside = 0.01f;
 
 void add(PrimaryHits& hits, const glm::vec3& position, std::uint32_t oriented_face) {
@@ -172,12 +173,13 @@ void BakedLight::spread(const PrimaryHits& points) {
       });
     }
   });
+  std::vector<float> lit = light;
+  std::erase(lit, 0.0f);
+  if (lit.empty()) return;
+  const auto median = lit.begin() + std::ssize(lit) / 2;
+  std::nth_element(lit.begin(), median, lit.end());
   const auto slit = static_cast<float>(texel() / 4);
-  const auto may_be_covered = [&](const cache::BilinearWeights& bilinear) {
-    return std::any_of(bilinear.node.begin(), bilinear.node.end(), [&](std::uint32_t node) {
-      return node != none && maps_.distance(node) < slit;
-    });
-  };
+  const auto low = [&](std::uint32_t node) { return node != none && maps_.distance(node) < slit; };
   const auto on_surface = [&](std::size_t texel) {
     return trace::location_on(scene_, points.oriented_face[texel], points.position[texel]);
   };
@@ -193,20 +195,18 @@ void BakedLight::spread(const PrimaryHits& points) {
     for (std::uint32_t y = 0; y < rectangle.height; ++y) {
       for (std::uint32_t x = 0; x < rectangle.width; ++x) {
         const std::size_t here = texel(x, y);
-        const bool covered = may_be_covered(found[here]);
+        const bool covered = std::ranges::any_of(found[here].node, low);
         for (const auto& [dx, dy] : around) {
           const std::uint32_t nx = x + dx, ny = y + dy;  // beyond 0 they are large
           if (nx >= rectangle.width || ny >= rectangle.height) continue;
           const std::size_t beside = texel(nx, ny);
           if (!(light[beside] > 0)) continue;
-          const bool hidden = light[here] < dark_beside * light[beside] &&
-                              !maps_.sees(member(at.chart), point(at, x, y), point(at, nx, ny));
-          if (!hidden &&
-              !(covered && maps_.is_in_slit(on_surface(beside), on_surface(here), slit))) {
-            continue;
+          if ((light[here] < dark_beside * std::min(light[beside], *median) &&
+               !maps_.sees(member(at.chart), point(at, x, y), point(at, nx, ny))) ||
+              (covered && maps_.is_in_slit(on_surface(beside), on_surface(here), slit))) {
+            bilinear_[here] = found[beside];
+            break;
           }
-          bilinear_[here] = found[beside];
-          break;
         }
       }
     }
